@@ -1,0 +1,167 @@
+// What enters and leaves the autonomy at a tick: the seam that is recorded, hashed and replayed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/base/fields.h"
+#include "core/base/fixed_vector.h"
+#include "core/base/time.h"
+#include "core/robot/robot_model.h"
+#include "hal/api/can_port.h"
+#include "hal/api/depth_camera_port.h"
+#include "hal/api/imu_port.h"
+#include "hal/api/operator_port.h"
+#include "hal/api/pose_port.h"
+
+namespace surefoot::autonomy {
+
+inline constexpr std::size_t kMaxCanFramesPerTick = 64;
+inline constexpr std::size_t kMaxImuSamplesPerTick = 16;
+inline constexpr std::size_t kMaxPoseSamplesPerTick = 8;
+inline constexpr std::size_t kMaxSlowTasks = 8;
+
+// Everything a tick may depend on, latched once by the executive. Depth frames are large and rare:
+// they are kept beside this struct and recorded on a channel of their own, just before the tick.
+struct TickInputs {
+  std::uint64_t tick = 0;
+  TimeNs stamp;       // logical time of the tick
+  bool late = false;  // the tick began after its deadline
+  FixedVector<hal::CanFrame, kMaxCanFramesPerTick> can;
+  FixedVector<hal::ImuSample, kMaxImuSamplesPerTick> imu;
+  FixedVector<hal::PoseSample, kMaxPoseSamplesPerTick> pose;
+  bool operator_fresh = false;
+  hal::OperatorCommand operator_command;  // meaningful where operator_fresh
+  bool depth_fresh = false;
+  const hal::DepthFrame* depth = nullptr;  // valid during the tick where depth_fresh; not a field
+  // Bit i: slow task i of the table was due at this tick but had not finished (an overrun). Its
+  // result stays back until the first tick where the bit is clear.
+  std::uint32_t slow_task_overruns = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("tick", self.tick);
+    visit("stamp_ns", self.stamp);
+    visit("late", self.late);
+    visit("can", self.can);
+    visit("imu", self.imu);
+    visit("pose", self.pose);
+    visit("operator_fresh", self.operator_fresh);
+    if (self.operator_fresh) visit("operator_command", self.operator_command);
+    visit("depth_fresh", self.depth_fresh);
+    visit("slow_task_overruns", self.slow_task_overruns);
+  }
+};
+
+enum class MissionPhase : std::uint8_t {
+  kEnableDrives = 0,
+  kStandUp,
+  kSettle,   // stand still: gyro bias, first map
+  kWalk,
+  kArrived,  // standing at the goal
+  kStopped,  // ended short of the goal; `stop_reason` says why
+};
+
+enum class StopReason : std::uint8_t {
+  kNone = 0,
+  kNoFoothold,       // no cell within reach can bear a foot, for longer than the patience
+  kDriveSilent,      // a joint's replies stopped
+  kTilt,             // attitude beyond recovery
+  kImuSilent,
+  kOperator,         // emergency stop
+  kMissionTimeout,
+  kDriveFault,       // a drive reported an error code
+};
+
+enum class FootholdReason : std::uint8_t {
+  kNominal = 0,   // the Raibert point can bear a foot
+  kMoved,         // moved to the nearest cell that can
+  kNone,          // none within reach: the leg holds its nominal point, the body slows down
+  kMapOff,        // mapping disabled
+};
+
+// One leg, in the odometry frame O (docs/frames_and_units.md).
+struct LegTelemetry {
+  bool stance_planned = true;
+  bool contact = false;               // estimated, from torques and gait phase
+  std::array<double, 3> foot_O_m{};   // centre of the foot sphere
+  std::array<double, 3> force_O_N{};  // commanded ground force on the robot
+  std::array<double, 3> foothold_nominal_O_m{};
+  std::array<double, 3> foothold_O_m{};
+  FootholdReason foothold_reason = FootholdReason::kNominal;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("stance_planned", self.stance_planned);
+    visit("contact", self.contact);
+    visit("foot_O_m", self.foot_O_m);
+    visit("force_O_N", self.force_O_N);
+    visit("foothold_nominal_O_m", self.foothold_nominal_O_m);
+    visit("foothold_O_m", self.foothold_O_m);
+    visit("foothold_reason", self.foothold_reason);
+  }
+};
+
+struct JointTelemetry {
+  double position_rad = 0;
+  double velocity_rad_s = 0;
+  double torque_Nm = 0;                  // measured by the drive
+  double position_command_rad = 0;
+  double torque_command_Nm = 0;          // feed-forward
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("position_rad", self.position_rad);
+    visit("velocity_rad_s", self.velocity_rad_s);
+    visit("torque_Nm", self.torque_Nm);
+    visit("position_command_rad", self.position_command_rad);
+    visit("torque_command_Nm", self.torque_command_Nm);
+  }
+};
+
+// The visible state of the autonomy. Enough to draw a run; hashed and compared by replay.
+struct Telemetry {
+  MissionPhase phase = MissionPhase::kEnableDrives;
+  StopReason stop_reason = StopReason::kNone;
+  std::array<double, 3> p_OB_m{};
+  std::array<double, 4> q_OB_wxyz{1, 0, 0, 0};
+  std::array<double, 3> v_OB_m_s{};
+  std::array<double, 3> angular_velocity_B_rad_s{};
+  std::array<double, 3> velocity_command_B{};  // forward m/s, left m/s, yaw rad/s
+  std::array<LegTelemetry, robot::kLegs> legs;
+  std::array<JointTelemetry, robot::kJoints> joints;
+  std::uint64_t depth_frames_mapped = 0;
+  std::uint64_t map_digest = 0;  // hash of the published map window
+  std::uint64_t replies_missed = 0;
+  std::uint64_t replies_invalid = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("phase", self.phase);
+    visit("stop_reason", self.stop_reason);
+    visit("p_OB_m", self.p_OB_m);
+    visit("q_OB_wxyz", self.q_OB_wxyz);
+    visit("v_OB_m_s", self.v_OB_m_s);
+    visit("angular_velocity_B_rad_s", self.angular_velocity_B_rad_s);
+    visit("velocity_command_B", self.velocity_command_B);
+    visit("legs", self.legs);
+    visit("joints", self.joints);
+    visit("depth_frames_mapped", self.depth_frames_mapped);
+    visit("map_digest", self.map_digest);
+    visit("replies_missed", self.replies_missed);
+    visit("replies_invalid", self.replies_invalid);
+  }
+};
+
+struct TickOutputs {
+  FixedVector<hal::CanFrame, kMaxCanFramesPerTick> can;
+  Telemetry telemetry;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("can", self.can);
+    visit("telemetry", self.telemetry);
+  }
+};
+
+}  // namespace surefoot::autonomy

@@ -1,0 +1,28 @@
+// How a configuration struct describes itself, once, for loading, checking, printing and hashing.
+//
+//   struct SwingParameters {
+//     double clearance_m = 0;
+//     template <class Self, class Visitor>
+//     static void describe(Self& self, Visitor& visit) {
+//       visit.real("clearance_m", self.clearance_m, {0.0, 0.3}, "foot height above obstacles");
+//     }
+//   };
+//
+// Visitors (apps/common/config_*.h) provide
+//   real(key, double&, Range, doc)            integer(key, T&, Range, doc)      boolean(key, bool&, doc)
+//   reals(key, std::array<double, N>&, Range, doc)
+//   choice(key, Enum&, std::span<const char* const> names, doc)   // enumerators count from 0
+//   group(key, Struct&)                       groups(key, std::array<Struct, N>&)
+// The key carries the unit. There are no defaults: a key that is missing in the file is an error, so
+// that what runs is what the files say.
+#pragma once
+
+namespace surefoot {
+
+// Closed interval of allowed values, in the unit of the key.
+struct Range {
+  double low;
+  double high;
+};
+
+}  // namespace surefoot

@@ -1,0 +1,27 @@
+# The only ways a library is declared, so that one place decides flags and visibility.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+
+# Everything includes from the repository root: "core/base/status.h".
+function(surefoot_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  if(ARG_SOURCES)
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+    target_link_libraries(${name} PUBLIC ${ARG_DEPENDS})
+  else()
+    add_library(${name} INTERFACE)
+    target_include_directories(${name} INTERFACE ${PROJECT_SOURCE_DIR})
+    target_link_libraries(${name} INTERFACE ${ARG_DEPENDS})
+  endif()
+endfunction()
+
+# A core module: no exceptions, no run-time type information, no guarded statics.
+function(surefoot_core_library name)
+  surefoot_library(${name} ${ARGN})
+  get_target_property(type ${name} TYPE)
+  if(type STREQUAL "STATIC_LIBRARY")
+    target_compile_options(${name} PRIVATE -fno-exceptions -fno-rtti -fno-threadsafe-statics
+                                           -fstack-usage)
+    set_property(GLOBAL APPEND PROPERTY SUREFOOT_CORE_ARCHIVES ${name})
+  endif()
+endfunction()
