@@ -1,0 +1,13 @@
+// Fixed-size linear algebra types used throughout core.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace surefoot {
+
+using Vector2 = Eigen::Matrix<double, 2, 1>;
+using Vector3 = Eigen::Matrix<double, 3, 1>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix3 = Eigen::Matrix<double, 3, 3>;
+
+}  // namespace surefoot
