@@ -1,0 +1,133 @@
+// Everything that is adjustable in the simulated robot's devices. Recommended values: README.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/base/parameters.h"
+#include "core/robot/robot_model.h"
+
+namespace surefoot::sim {
+
+struct PhysicsConfig {
+  double step_s = 0.0005;
+  double contact_erp = 0.3;                  // part of a penetration removed per step
+  double contact_cfm = 1e-5;                 // softness [s/kg]
+  double max_correcting_velocity_m_s = 0.5;  // at which a penetration is pushed out
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("step_s", self.step_s, {0.0001, 0.002}, "fixed step of the integrator");
+    visit.real("contact_erp", self.contact_erp, {0.01, 0.9}, "penetration removed per step");
+    visit.real("contact_cfm", self.contact_cfm, {1e-9, 0.01}, "softness");
+    visit.real("max_correcting_velocity_m_s", self.max_correcting_velocity_m_s, {0.01, 10.0},
+               "at which a penetration is pushed out");
+  }
+};
+
+// White noise of density d gives samples of deviation d * sqrt(rate). Biases start at a normal draw of
+// the stated deviation and then walk.
+struct ImuNoiseConfig {
+  double gyro_noise_rad_s_rtHz = 0;
+  double gyro_bias_rad_s = 0;
+  double gyro_bias_walk_rad_s2_rtHz = 0;
+  double accelerometer_noise_m_s2_rtHz = 0;
+  double accelerometer_bias_m_s2 = 0;
+  double accelerometer_bias_walk_m_s3_rtHz = 0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("gyro_noise_rad_s_rtHz", self.gyro_noise_rad_s_rtHz, {0.0, 0.1}, "density");
+    visit.real("gyro_bias_rad_s", self.gyro_bias_rad_s, {0.0, 0.5}, "one sigma at start");
+    visit.real("gyro_bias_walk_rad_s2_rtHz", self.gyro_bias_walk_rad_s2_rtHz, {0.0, 0.1}, "density");
+    visit.real("accelerometer_noise_m_s2_rtHz", self.accelerometer_noise_m_s2_rtHz, {0.0, 1.0},
+               "density");
+    visit.real("accelerometer_bias_m_s2", self.accelerometer_bias_m_s2, {0.0, 2.0},
+               "one sigma at start");
+    visit.real("accelerometer_bias_walk_m_s3_rtHz", self.accelerometer_bias_walk_m_s3_rtHz,
+               {0.0, 1.0}, "density");
+  }
+};
+
+struct DepthNoiseConfig {
+  double latency_s = 0;              // from exposure to delivery
+  double edge_dropout = 0;           // probability at a pixel beside a depth discontinuity
+  double random_dropout = 0;         // probability anywhere else
+  double correlated_part = 0;        // share of the disparity variance common to a 4 x 4 patch
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("latency_s", self.latency_s, {0.0, 0.2}, "from exposure to delivery");
+    visit.real("edge_dropout", self.edge_dropout, {0.0, 1.0}, "probability at discontinuities");
+    visit.real("random_dropout", self.random_dropout, {0.0, 1.0}, "probability elsewhere");
+    visit.real("correlated_part", self.correlated_part, {0.0, 1.0},
+               "share of the disparity variance common to a 4 x 4 patch");
+  }
+};
+
+struct CanConfig {
+  double frame_time_s = 0.00012;       // one frame on the wire; commands and replies share the bus
+  double reply_loss = 0;               // probability that a reply never arrives
+  std::uint8_t reply_size = 8;         // 6 (original), 7 (motorcontrol v2) or 8 (CubeMars)
+  std::uint16_t reply_id = 0;          // CAN id of every reply; byte 0 names the drive
+  double encoder_noise_rad = 0;        // at the drive output, one sigma
+  double velocity_noise_rad_s = 0;     // at the drive output, one sigma
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("frame_time_s", self.frame_time_s, {0.0, 0.002}, "one frame on the wire");
+    visit.real("reply_loss", self.reply_loss, {0.0, 1.0}, "probability");
+    visit.integer("reply_size", self.reply_size, {6, 8}, "bytes");
+    visit.integer("reply_id", self.reply_id, {0, 2047}, "CAN id of every reply");
+    visit.real("encoder_noise_rad", self.encoder_noise_rad, {0.0, 0.1}, "one sigma");
+    visit.real("velocity_noise_rad_s", self.velocity_noise_rad_s, {0.0, 2.0}, "one sigma");
+  }
+};
+
+// Faults injected on purpose. Times are simulated time; a period with end <= begin never happens.
+struct FaultConfig {
+  std::int32_t silent_joint = -1;      // this drive stops answering and goes limp; -1: none
+  double silent_from_s = 0;
+  double camera_off_from_s = 0;        // exposures in [from, until) are lost
+  double camera_off_until_s = 0;
+  double imu_off_from_s = 0;           // samples in [from, until) are lost
+  double imu_off_until_s = 0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.integer("silent_joint", self.silent_joint, {-1, 11}, "drive that dies; -1: none");
+    visit.real("silent_from_s", self.silent_from_s, {0.0, 1e6}, "when it dies");
+    visit.real("camera_off_from_s", self.camera_off_from_s, {0.0, 1e6}, "camera lost from");
+    visit.real("camera_off_until_s", self.camera_off_until_s, {0.0, 1e6}, "camera lost until");
+    visit.real("imu_off_from_s", self.imu_off_from_s, {0.0, 1e6}, "IMU lost from");
+    visit.real("imu_off_until_s", self.imu_off_until_s, {0.0, 1e6}, "IMU lost until");
+  }
+};
+
+// How the robot is set down. Not in configuration files: the default is what every mission starts
+// from, the rest serves tests and benches.
+struct StartPose {
+  std::array<double, robot::kJointsPerLeg> leg_rad{0.0, -1.4, 2.7};  // folded, feet flat
+  double drop_height_m = 0.0005;  // clearance between the lowest point of the robot and the ground
+  bool trunk_fixed = false;       // bolted to a stand
+};
+
+struct SimulatorConfig {
+  PhysicsConfig physics;
+  ImuNoiseConfig imu;
+  DepthNoiseConfig depth;
+  CanConfig can;
+  FaultConfig faults;
+  StartPose start;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.group("physics", self.physics);
+    visit.group("imu", self.imu);
+    visit.group("depth", self.depth);
+    visit.group("can", self.can);
+    visit.group("faults", self.faults);
+  }
+};
+
+}  // namespace surefoot::sim
