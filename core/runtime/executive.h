@@ -1,0 +1,154 @@
+// The executive: one thread, one task table, one order. At each tick it
+//   1. waits for the tick's deadline (the only place that reads a clock),
+//   2. latches every input once into TickInputs,
+//   3. runs the table,
+//   4. commits: sends the outputs, extends the hash chain, writes the record.
+//
+// Logical execution time. A task with latency 0 runs release, run and publish within its tick, in
+// table order. A task with latency k > 0 is released at tick r (release() copies what it needs),
+// runs anywhere, and is published at tick r + k before any other task runs, whatever it really
+// took. When it is not done by then, bit i of TickInputs::slow_task_overruns is set (i counts the
+// slow tasks of the table) and it is published at the first later tick where the bit is clear. A
+// slow task that is still pending when its next release comes is not released; that is counted.
+//
+// Hash chain: h[t] = Fnv64(h[t-1], canonical bytes of TickInputs, of the depth frame where fresh,
+// of TickOutputs), h[-1] = 0. Execution times never enter it.
+//
+// Fixed memory (about 1.3 MB, most of it one depth frame and its bytes); no heap; the object
+// belongs into static storage. Cost of a tick without tasks: O(inputs + outputs) bytes, plus one
+// pass over the depth frame when there is one.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/autonomy/tick.h"
+#include "core/base/status.h"
+#include "core/base/time.h"
+#include "core/runtime/slow_task_runner.h"
+#include "core/runtime/statistics.h"
+#include "core/runtime/tick_record.h"
+#include "hal/api/board.h"
+
+namespace surefoot::runtime {
+
+inline constexpr std::size_t kMaxTasks = 16;
+
+// One row of the task table. Released at ticks where tick % period_ticks == phase_ticks.
+struct Task {
+  const char* name = "";
+  std::uint32_t period_ticks = 1;
+  std::uint32_t phase_ticks = 0;
+  std::uint32_t latency_ticks = 0;
+  std::uint32_t budget_us = 0;
+  void* self = nullptr;
+  // Takes over what the task needs from the inputs. false: nothing to do, run and publish are left
+  // out.
+  bool (*release)(void* self, const autonomy::TickInputs& inputs) = nullptr;
+  void (*run)(void* self) = nullptr;
+  void (*publish)(void* self, autonomy::TickOutputs& outputs) = nullptr;
+};
+
+// Told when the body of a tick (latch to commit) begins and ends: memory guards, tracing.
+class TickObserver {
+ public:
+  void begin_tick_body() { do_begin_tick_body(); }
+  void end_tick_body() { do_end_tick_body(); }
+
+ protected:
+  ~TickObserver() = default;
+
+ private:
+  virtual void do_begin_tick_body() = 0;
+  virtual void do_end_tick_body() = 0;
+};
+
+struct ExecutiveSetup {
+  hal::Board board;                  // clock is required, the rest may be null
+  std::span<const Task> tasks;       // must outlive the executive
+  TimeNs period;                     // of a tick
+  SlowTaskRunner* runner = nullptr;  // required when the table has a slow task
+  TickObserver* observer = nullptr;
+};
+
+// What the executive lost or saw. Not hashed.
+struct ExecutiveCounters {
+  std::uint64_t late_ticks = 0;
+  std::uint64_t can_dropped = 0;  // received, but beyond the capacity of a tick: oldest give way
+  std::uint64_t imu_dropped = 0;
+  std::uint64_t pose_dropped = 0;
+  std::uint64_t sends_refused = 0;    // by the port, of kMaxCanFramesPerTick at most per tick
+  std::uint64_t depth_invalid = 0;    // frames whose size exceeds the capacity: ignored
+  std::uint64_t records_refused = 0;  // by the record sink
+  std::uint64_t overrun_ticks = 0;    // ticks at which a slow task was due but not done
+};
+
+class Executive {
+ public:
+  // Checks the table and takes over the set-up; the first tick is due at clock.now() + period.
+  // kInvalid: no clock, no or too many tasks, too many slow tasks, a zero period, phase >= period,
+  // a null function, or a slow task without a runner; nothing changed.
+  Status start(const ExecutiveSetup& setup);
+
+  // One tick. kEndOfData: the clock has no further ticks, nothing was latched or changed. Any other
+  // status but kOk comes from the clock, likewise.
+  Status run_tick();
+
+  // After run_tick(): of the tick just done.
+  const autonomy::TickInputs& inputs() const { return inputs_; }
+  const autonomy::TickOutputs& outputs() const { return outputs_; }
+  std::uint64_t hash() const { return hash_; }
+  // Ticks done.
+  std::uint64_t ticks() const { return ticks_; }
+  const ExecutiveCounters& counters() const { return counters_; }
+
+  std::size_t task_count() const { return setup_.tasks.size(); }
+  TaskReport task_report(std::size_t index) const;
+  // Work of the tick thread from latch to commit, without what slow tasks ran inline.
+  TaskReport tick_report() const;
+
+ private:
+  struct TaskState {
+    bool pending = false;        // slow task: released, not yet published
+    std::size_t slow_index = 0;  // position among the slow tasks
+    std::uint64_t due_tick = 0;
+    TimeNs release_time;  // spent in release(), added to the execution
+    std::uint64_t overruns = 0;
+    std::uint64_t skipped = 0;
+    std::uint64_t late_publishes = 0;
+    DurationHistogram histogram;
+  };
+
+  void run_tick_body(Status woke);
+  void latch(Status woke);
+  void latch_depth();
+  void latch_overruns();
+  void publish_due();
+  void run_table();
+  void run_fast(std::size_t index);
+  void release_slow(std::size_t index);
+  void commit();
+  void store_record(hal::RecordChannel channel, std::span<const std::uint8_t> bytes);
+  void account(std::size_t index, TimeNs duration);
+  TimeNs stopwatch() const;
+
+  ExecutiveSetup setup_;
+  TimeNs start_;  // logical time of tick 0
+  std::uint64_t ticks_ = 0;
+  std::uint64_t hash_ = 0;
+  TimeNs inline_time_;  // of slow tasks, within the present tick
+  std::uint64_t tick_overruns_ = 0;
+  ExecutiveCounters counters_;
+  std::array<TaskState, kMaxTasks> states_{};
+  DurationHistogram tick_histogram_;
+  autonomy::TickInputs inputs_;
+  autonomy::TickOutputs outputs_;
+  hal::DepthFrame depth_{};
+  std::size_t depth_bytes_size_ = 0;
+  std::array<std::uint8_t, kMaxDepthBytes> depth_bytes_{};
+  std::array<std::uint8_t, kMaxTickBytes> tick_bytes_{};
+};
+
+}  // namespace surefoot::runtime
