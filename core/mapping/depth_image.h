@@ -1,0 +1,39 @@
+// A depth frame made ready: thinned to the pixel bound, in metres, with two answers per pixel that need
+// its neighbours: is it a mixed pixel, and how near is the nearest surface around it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/mapping/mapping_config.h"
+#include "hal/api/depth_camera_port.h"
+
+namespace surefoot::mapping {
+
+// Pixels used per frame; larger images are thinned by the smallest whole stride that fits.
+inline constexpr std::size_t kMaxPixels = 20480;
+
+struct DepthImage {
+  std::int32_t width = 0;
+  std::int32_t height = 0;
+  std::int32_t stride = 1;  // pixels of the frame per pixel here
+  double fx = 0;            // of the thinned image, [pixels]
+  double fy = 0;
+  double cx = 0;
+  double cy = 0;
+  std::array<float, kMaxPixels> z_m{};         // 0: no measurement
+  std::array<float, kMaxPixels> nearest_m{};   // least z of the 3 x 3; 0: not all nine measured
+  std::array<std::uint8_t, kMaxPixels> mixed{};  // 1: between two surfaces or alone
+
+  std::size_t at(std::int32_t u, std::int32_t v) const {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(u);
+  }
+};
+
+// The header of `frame` must have been checked. Cost: a few operations per pixel.
+void prepare(const hal::DepthFrame& frame, const MappingConfig& config,
+             const DepthSensorModel& sensor, DepthImage& out);
+
+}  // namespace surefoot::mapping

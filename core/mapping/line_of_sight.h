@@ -1,0 +1,31 @@
+// What a frame says about cells it did not hit: measured cells that it sees through are doubted and
+// cleared, unseen cells that its rays pass over get a ceiling.
+#pragma once
+
+#include <cstdint>
+
+#include "core/mapping/depth_image.h"
+#include "core/mapping/integration.h"
+#include "core/mapping/mapping_config.h"
+
+namespace surefoot::mapping {
+
+struct Sight {
+  const DepthImage& image;
+  const CameraPose& X_OC;
+  const MappingConfig& config;
+  const DepthSensorModel& sensor;
+  std::uint32_t now_ms;
+};
+
+// Every measured cell within kMaxClearRadius_cells of the camera is projected into the image; where
+// all nine pixels around it lie farther away than the cell by the margin, the cell is doubted, and
+// after clear_frames such frames in a row it is cleared: it falls back to bounded.
+// Cells measured in this frame (stamp now_ms) are passed over.
+void clear_seen_through(const Sight& sight, ControlMap& map, IntegrationReport& report);
+
+// Rays of every ceiling_pixel_stride-th pixel and row, offset by `phase`.
+void lower_ceilings(const Sight& sight, std::uint64_t phase, ControlMap& map,
+                    IntegrationReport& report);
+
+}  // namespace surefoot::mapping
