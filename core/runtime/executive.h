@@ -14,6 +14,9 @@
 // Hash chain: h[t] = Fnv64(h[t-1], canonical bytes of TickInputs, of the depth frame where fresh,
 // of TickOutputs), h[-1] = 0. Execution times never enter it.
 //
+// TickOutputs: the list of CAN frames is emptied before each tick; telemetry keeps its values until
+// a task writes them again.
+//
 // Fixed memory (about 1.3 MB, most of it one depth frame and its bytes); no heap; the object
 // belongs into static storage. Cost of a tick without tasks: O(inputs + outputs) bytes, plus one
 // pass over the depth frame when there is one.
@@ -77,6 +80,7 @@ struct ExecutiveSetup {
 struct ExecutiveCounters {
   std::uint64_t late_ticks = 0;
   std::uint64_t can_dropped = 0;  // received, but beyond the capacity of a tick: oldest give way
+  std::uint64_t can_invalid = 0;  // received with an impossible size: ignored
   std::uint64_t imu_dropped = 0;
   std::uint64_t pose_dropped = 0;
   std::uint64_t sends_refused = 0;    // by the port, of kMaxCanFramesPerTick at most per tick
@@ -89,7 +93,8 @@ class Executive {
  public:
   // Checks the table and takes over the set-up; the first tick is due at clock.now() + period.
   // kInvalid: no clock, no or too many tasks, too many slow tasks, a zero period, phase >= period,
-  // a null function, or a slow task without a runner; nothing changed.
+  // a null function, a latency above the task's period, or a slow task without a runner; nothing
+  // changed.
   Status start(const ExecutiveSetup& setup);
 
   // One tick. kEndOfData: the clock has no further ticks, nothing was latched or changed. Any other
@@ -123,6 +128,7 @@ class Executive {
 
   void run_tick_body(Status woke);
   void latch(Status woke);
+  void latch_can();
   void latch_depth();
   void latch_overruns();
   void publish_due();

@@ -47,18 +47,16 @@ class SlowTaskRunner {
   virtual TimeNs do_inline_time(std::size_t index) const = 0;
 };
 
-// Runs the task inside start() on the tick thread. Base of the runners for simulation and replay,
-// which differ only in what they answer.
-class InlineRunnerBase : public SlowTaskRunner {
+// Simulation: runs the task inside start() on the tick thread, and it is always done when due. The
+// runners below differ from it only in what they answer.
+class InlineRunner : public SlowTaskRunner {
  public:
   // stopwatch: null leaves times at zero. It must outlive the runner.
-  explicit InlineRunnerBase(hal::Clock* stopwatch) : stopwatch_(stopwatch) {}
-
- protected:
-  ~InlineRunnerBase() = default;
+  explicit InlineRunner(hal::Clock* stopwatch) : stopwatch_(stopwatch) {}
 
  private:
   void do_start(std::size_t index, const SlowWork& work) final;
+  bool do_finished(std::size_t) override { return true; }
   TimeNs do_execution_time(std::size_t index) const final;
   TimeNs do_inline_time(std::size_t index) const final;
 
@@ -66,20 +64,11 @@ class InlineRunnerBase : public SlowTaskRunner {
   std::array<TimeNs, autonomy::kMaxSlowTasks> times_{};
 };
 
-// Simulation: always done when due.
-class InlineRunner final : public InlineRunnerBase {
- public:
-  explicit InlineRunner(hal::Clock* stopwatch) : InlineRunnerBase(stopwatch) {}
-
- private:
-  bool do_finished(std::size_t) override { return true; }
-};
-
 // Simulation with seeded overruns: each question is answered "not yet" with the given probability.
-class FaultInjectingRunner final : public InlineRunnerBase {
+class FaultInjectingRunner final : public InlineRunner {
  public:
   FaultInjectingRunner(hal::Clock* stopwatch, std::uint64_t seed, double probability)
-      : InlineRunnerBase(stopwatch), random_(seed), probability_(probability) {}
+      : InlineRunner(stopwatch), random_(seed), probability_(probability) {}
 
  private:
   bool do_finished(std::size_t) override { return random_.uniform() >= probability_; }
@@ -90,10 +79,10 @@ class FaultInjectingRunner final : public InlineRunnerBase {
 
 // Replay: answers what was recorded. `overruns` is the recorded TickInputs::slow_task_overruns of
 // the tick being replayed; whoever feeds the record keeps it up to date.
-class RecordedRunner final : public InlineRunnerBase {
+class RecordedRunner final : public InlineRunner {
  public:
   RecordedRunner(hal::Clock* stopwatch, const std::uint32_t& overruns)
-      : InlineRunnerBase(stopwatch), overruns_(overruns) {}
+      : InlineRunner(stopwatch), overruns_(overruns) {}
 
  private:
   bool do_finished(std::size_t index) override { return ((overruns_ >> index) & 1u) == 0; }
