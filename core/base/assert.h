@@ -5,10 +5,12 @@
 namespace surefoot {
 
 // Supplied by the program (hal/linux on Linux, the start-up code on a microcontroller). Must not
-// return: it reports where, and stops the process, upon which the drives' own time-out damps the legs.
+// return: it reports where, and stops the process, upon which the drives' own time-out damps the
+// legs.
 [[noreturn]] void assertion_failed(const char* file, int line, const char* expression);
 
 }  // namespace surefoot
 
-#define SUREFOOT_ASSERT(condition) \
-  ((condition) ? static_cast<void>(0) : ::surefoot::assertion_failed(__FILE__, __LINE__, #condition))
+#define SUREFOOT_ASSERT(condition)    \
+  ((condition) ? static_cast<void>(0) \
+               : ::surefoot::assertion_failed(__FILE__, __LINE__, #condition))

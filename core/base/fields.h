@@ -14,8 +14,8 @@
 //
 // A visitor derives from FieldVisitor<Derived> and defines
 //   template <class T> void scalar(const char* name, T& value);   // arithmetic, bool, enum
-// and may define list_size(), enter() and leave(). Canonical form: little-endian, in the order listed,
-// floats as their IEEE bits; a FixedVector is its size (32 bits) and its items.
+// and may define list_size(), enter() and leave(). Canonical form: little-endian, in the order
+// listed, floats as their IEEE bits; a FixedVector is its size (32 bits) and its items.
 #pragma once
 
 #include <array>
@@ -35,7 +35,8 @@
 namespace surefoot {
 
 template <class T>
-concept ScalarField = std::is_arithmetic_v<std::remove_cv_t<T>> || std::is_enum_v<std::remove_cv_t<T>>;
+concept ScalarField =
+    std::is_arithmetic_v<std::remove_cv_t<T>> || std::is_enum_v<std::remove_cv_t<T>>;
 
 // The integer that holds a scalar's bits.
 template <ScalarField T>
@@ -168,8 +169,8 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
   Status status_ = Status::kOk;
 };
 
-// Reads canonical bytes back. status() is kCorrupt when they ended early or a list is longer than its
-// capacity; fields read after that keep their values.
+// Reads canonical bytes back. status() is kCorrupt when they ended early or a list is longer than
+// its capacity; fields read after that keep their values.
 class FieldReader : public FieldVisitor<FieldReader> {
  public:
   explicit FieldReader(std::span<const std::uint8_t> buffer) : buffer_(buffer) {}

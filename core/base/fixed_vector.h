@@ -1,4 +1,5 @@
-// A vector whose capacity is part of its type. Never allocates. Full is a Status and changes nothing.
+// A vector whose capacity is part of its type. Never allocates. Full is a Status that changes
+// nothing.
 #pragma once
 
 #include <array>

@@ -9,12 +9,15 @@
 //   };
 //
 // Visitors (apps/common/config_*.h) provide
-//   real(key, double&, Range, doc)            integer(key, T&, Range, doc)      boolean(key, bool&, doc)
+//   real(key, double&, Range, doc)
+//   integer(key, T&, Range, doc)
+//   boolean(key, bool&, doc)
 //   reals(key, std::array<double, N>&, Range, doc)
 //   choice(key, Enum&, std::span<const char* const> names, doc)   // enumerators count from 0
-//   group(key, Struct&)                       groups(key, std::array<Struct, N>&)
-// The key carries the unit. There are no defaults: a key that is missing in the file is an error, so
-// that what runs is what the files say.
+//   group(key, Struct&)
+//   groups(key, std::array<Struct, N>&)
+// The key carries the unit. There are no defaults: a key that is missing in the file is an error,
+// so that what runs is what the files say.
 #pragma once
 
 namespace surefoot {

@@ -24,15 +24,15 @@ class Random {
     const auto rotation = static_cast<std::uint32_t>(old >> 59u);
     return (xorshifted >> rotation) | (xorshifted << ((32u - rotation) & 31u));
   }
-  // Uniform in [0, bound), unbiased enough for simulation: multiply-shift, bias below 2^-32 * bound.
+  // Uniform in [0, bound) by multiply and shift; the bias is below 2^-32 * bound.
   constexpr std::uint32_t below(std::uint32_t bound) {
     return static_cast<std::uint32_t>((static_cast<std::uint64_t>(next_u32()) * bound) >> 32u);
   }
   // Uniform in [0, 1), 32 bits of resolution.
   constexpr double uniform() { return static_cast<double>(next_u32()) * 0x1p-32; }
   constexpr double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  // Mean 0, variance 1: the sum of twelve uniforms (Irwin-Hall), bounded by +-6. Exact adds only, no
-  // libm, and the cut tails are a virtue here: no sample can be absurd.
+  // Mean 0, variance 1: the sum of twelve uniforms (Irwin-Hall), bounded by +-6. Exact adds only,
+  // no libm, and the cut tails are a virtue here: no sample can be absurd.
   constexpr double normal() {
     double sum = -6.0;
     for (int i = 0; i < 12; ++i) sum += uniform();

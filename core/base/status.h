@@ -9,6 +9,8 @@
 
 namespace surefoot {
 
+// Version 14 takes the attribute for a variable and indents what follows.
+// clang-format off
 enum class [[nodiscard]] Status : std::uint8_t {
   kOk = 0,
   kInvalid,      // a value breaks the documented domain (not finite, wrong length, wrong code)
@@ -20,6 +22,7 @@ enum class [[nodiscard]] Status : std::uint8_t {
   kNotFound,     // the search ended without a result
   kEndOfData,    // a recorded source has nothing more
 };
+// clang-format on
 
 constexpr bool ok(Status status) { return status == Status::kOk; }
 

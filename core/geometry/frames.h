@@ -1,17 +1,17 @@
-// Frame tags and frame-tagged geometry: adding a point of one frame to a vector of another, or chaining
-// poses in the wrong order, does not compile (tests/compile_fail). The letters are defined in
-// docs/frames_and_units.md.
+// Frame tags and frame-tagged geometry: adding a point of one frame to a vector of another, or
+// chaining poses in the wrong order, does not compile (tests/compile_fail). The letters are defined
+// in docs/frames_and_units.md.
 #pragma once
 
 #include "core/math/linear.h"
 
 namespace surefoot::geometry {
 
-struct Odometry {};      // O: gravity-aligned, where the estimator started; the robot's own world
-struct Body {};          // B: trunk
-struct Imu {};           // I
-struct DepthCamera {};   // C: optical frame, x right, y down, z forward
-struct World {};         // W: the simulator's truth; never appears in core's logic
+struct Odometry {};     // O: gravity-aligned, where the estimator started; the robot's own world
+struct Body {};         // B: trunk
+struct Imu {};          // I
+struct DepthCamera {};  // C: optical frame, x right, y down, z forward
+struct World {};        // W: the simulator's truth; never appears in core's logic
 
 // A displacement, velocity, force ... expressed in the axes of Frame.
 template <class Frame>
@@ -52,9 +52,7 @@ struct Pose {
   Rotation<A, B> rotation;
   Point<A> origin;
 
-  Point<A> operator*(const Point<B>& point) const {
-    return {rotation.matrix * point.m + origin.m};
-  }
+  Point<A> operator*(const Point<B>& point) const { return {rotation.matrix * point.m + origin.m}; }
   Vector<A> operator*(const Vector<B>& vector) const { return rotation * vector; }
   template <class C>
   Pose<A, C> operator*(const Pose<B, C>& other) const {

@@ -7,8 +7,8 @@
 namespace surefoot::geometry {
 namespace {
 
-// Squared angle [rad^2] below which sin(a) / a is 1 to the last bit, and above which squaring has not
-// lost anything to underflow.
+// Squared angle [rad^2] below which sin(a) / a is 1 to the last bit, and above which squaring has
+// not lost anything to underflow.
 constexpr double kSmallSquare_rad2 = 1e-30;
 // cos(pitch) below which roll and yaw turn about the same axis and only their sum is in the matrix.
 constexpr double kGimbalCosine = 1e-12;
@@ -28,9 +28,9 @@ Vector3 logarithm(const Quaternion& q) {
 }  // namespace
 
 Quaternion operator*(const Quaternion& a, const Quaternion& b) {
-  return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
-          a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-          a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+  return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,  //
+          a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,  //
+          a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,  //
           a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
 }
 
@@ -120,8 +120,8 @@ Vector3 to_roll_pitch_yaw(const Matrix3& r) {
   // taking roll from the last row alone would not undo its error.
   const double sin_yaw = r(1, 0) / cos_pitch;
   const double cos_yaw = r(0, 0) / cos_pitch;
-  const double roll_rad = math::atan2(sin_yaw * r(0, 2) - cos_yaw * r(1, 2),
-                                      cos_yaw * r(1, 1) - sin_yaw * r(0, 1));
+  const double roll_rad =
+      math::atan2(sin_yaw * r(0, 2) - cos_yaw * r(1, 2), cos_yaw * r(1, 1) - sin_yaw * r(0, 1));
   return {roll_rad, pitch_rad, yaw_rad};
 }
 

@@ -83,9 +83,9 @@ double polynomial(double x, const std::array<double, kTerms>& coefficients) {
   return value;
 }
 
-// x - quadrants * pi/2 for |quadrants| < 2^20. pi/2 comes in parts of 33 bits, so that the first three
-// products are exact; the sum of the parts is good to 2^-157, far below the closest approach of a
-// double to a multiple of pi/2 (about 2^-62 in this range).
+// x - quadrants * pi/2 for |quadrants| < 2^20. pi/2 comes in parts of 33 bits, so that the first
+// three products are exact; the sum of the parts is good to 2^-157, far below the closest approach
+// of a double to a multiple of pi/2 (about 2^-62 in this range).
 Pair subtract_quadrants(double x, double quadrants) {
   constexpr std::array<double, 4> kHalfPiParts = {0x1.921fb544p+0, 0x1.0b4611a6p-34,
                                                   0x1.3198a2ep-69, 0x1.b839a252049c1p-104};
@@ -115,25 +115,52 @@ constexpr double inverse_factorial(int n) {
   return 1 / product;
 }
 
-// sin and cos on the reduced range by their Taylor series; the first omitted term is below 2^-63.
-Pair sin_reduced(Pair x) {
-  constexpr std::array<double, 8> kSeries = {
-      -inverse_factorial(3), inverse_factorial(5),   -inverse_factorial(7),  inverse_factorial(9),
-      -inverse_factorial(11), inverse_factorial(13), -inverse_factorial(15), inverse_factorial(17)};
-  const double square = x.hi * x.hi;
-  const double cubic = x.hi * square * polynomial(square, kSeries);
-  return fast_two_sum(x.hi, cubic + x.lo * (1 - 0.5 * square));
-}
+struct SinCosPair {
+  Pair sin;
+  Pair cos;
+};
 
-Pair cos_reduced(Pair x) {
-  constexpr std::array<double, 8> kSeries = {
-      inverse_factorial(4),  -inverse_factorial(6),  inverse_factorial(8),  -inverse_factorial(10),
-      inverse_factorial(12), -inverse_factorial(14), inverse_factorial(16), -inverse_factorial(18)};
-  const Pair square = two_product(x.hi, x.hi);
-  const Pair parabola = fast_two_sum(1.0, -0.5 * square.hi);
-  const double quartic = square.hi * square.hi * polynomial(square.hi, kSeries);
-  const double small = quartic - (x.hi * x.lo + 0.5 * square.lo);
-  return fast_two_sum(parabola.hi, parabola.lo + small);
+// At i / 16 rad.
+constexpr std::array<SinCosPair, 14> kSinCos = {{
+    {{0, 0}, {0x1p+0, 0}},
+    {{0x1.ffaaaeeed4edbp-5, -0x1.2d16d32684b69p-59}, {0x1.ff0015549f4d3p-1, 0x1.328387b99426fp-55}},
+    {{0x1.feaaeee86ee36p-4, -0x1.afcb2bcc6f03bp-59}, {0x1.fc015527d5bd3p-1, 0x1.b68f35094efb8p-55}},
+    {{0x1.7dc102fbaf2b5p-3, 0x1.5ab50e23c97c3p-59}, {0x1.f706bdf9ece1cp-1, -0x1.698c80c36dcb4p-55}},
+    {{0x1.faaeed4f31577p-3, -0x1.15d88508e32b8p-57}, {0x1.f01549f7deea1p-1, 0x1.d3c1e99e5cafdp-55}},
+    {{0x1.3ad129769d3d8p-2, 0x1.03d550487839ap-63}, {0x1.e733ea0193d4p-1, -0x1.6428b3546ce13p-55}},
+    {{0x1.7710255764214p-2, -0x1.6ead7314bb6cep-57}, {0x1.dc6b7eb995912p-1, 0x1.4b364776dcd35p-58}},
+    {{0x1.b1d8305321617p-2, -0x1.ae242cb99f519p-56}, {0x1.cfc6cfa52ad9fp-1, 0x1.8b5b5508f2a0dp-55}},
+    {{0x1.eaee8744b05fp-2, -0x1.789b43c9b027dp-58}, {0x1.c1528065b7d5p-1, -0x1.892111312e828p-55}},
+    {{0x1.110d0c4b69c3bp-1, 0x1.d918998809981p-55}, {0x1.b11d04162a4c6p-1, 0x1.1dd561efbc0c2p-56}},
+    {{0x1.2b91dea88421ep-1, -0x1.fa371db216abp-55}, {0x1.9f368ed912f85p-1, -0x1.1d200c5791606p-55}},
+    {{0x1.44eb381cf386bp-1, -0x1.3ed6c1e6a5505p-55}, {0x1.8bb105a5dc9p-1, 0x1.863e03e9474c1p-55}},
+    {{0x1.5cffc16bf8f0dp-1, 0x1.96cb370eb578ap-55}, {0x1.769fec655211fp-1, -0x1.827d5cf8c68c5p-57}},
+    {{0x1.73b7680dea578p-1, -0x1.2248306dc12a2p-56}, {0x1.6018526f563dfp-1, 0x1.46ca5e0e432dp-55}},
+}};
+
+// On the reduced range, by the addition theorems from the nearest tabulated angle; the rest of at
+// most 1/32 rad by Taylor series, first omitted terms x^10 / 11! and x^10 / 10! below 2^-71.
+SinCosPair sin_cos_reduced(Pair angle) {
+  constexpr std::array<double, 4> kSinSeries = {-inverse_factorial(3), inverse_factorial(5),
+                                                -inverse_factorial(7), inverse_factorial(9)};
+  constexpr std::array<double, 4> kCosSeries = {-inverse_factorial(2), inverse_factorial(4),
+                                                -inverse_factorial(6), inverse_factorial(8)};
+  const double sign = angle.hi < 0 ? -1 : 1;
+  const double index = nearest_integer(16 * sign * angle.hi);
+  const double x = sign * angle.hi - index / 16;  // exact
+  const double square = x * x;
+  const double sin_rest = sign * angle.lo + x * square * polynomial(square, kSinSeries);
+  const double cos_rest = square * polynomial(square, kCosSeries) - x * (sign * angle.lo);
+  const auto& [s, c] = kSinCos[static_cast<std::size_t>(index)];
+  const Pair cx = two_product(c.hi, x);
+  const Pair sx = two_product(s.hi, x);
+  const Pair sine = fast_two_sum(s.hi, cx.hi);
+  const Pair cosine = fast_two_sum(c.hi, -sx.hi);
+  const double sine_lo =
+      sine.lo + (cx.lo + (s.lo + c.lo * x + (c.hi * sin_rest + s.hi * cos_rest)));
+  const double cosine_lo =
+      cosine.lo - (sx.lo - (c.lo - s.lo * x + (c.hi * cos_rest - s.hi * sin_rest)));
+  return {fast_two_sum(sign * sine.hi, sign * sine_lo), fast_two_sum(cosine.hi, cosine_lo)};
 }
 
 // atan(i / 16).
@@ -191,7 +218,8 @@ Pair other_leg(double x) {
   if (rest.hi <= 0) return {0, 0};
   const double root = sqrt(rest.hi);
   const Pair back = two_product(root, root);
-  return {root, (((rest.hi - back.hi) - back.lo) + (rest.lo - square.lo)) / (2 * root)};
+  const double correction = ((rest.hi - back.hi) - back.lo) + (rest.lo - square.lo);
+  return fast_two_sum(root, correction / (2 * root));
 }
 
 constexpr double power_of_two(std::int64_t exponent) {  // [-1022, 1023]
@@ -207,8 +235,7 @@ double sqrt(double x) {
 
 SinCos sin_cos(double x) {
   const Reduced reduced = reduce(x);
-  const Pair s = sin_reduced(reduced.angle);
-  const Pair c = cos_reduced(reduced.angle);
+  const auto [s, c] = sin_cos_reduced(reduced.angle);
   switch (reduced.quadrants) {
     case 0: return {magnitude(x) < kTiny ? x : s.hi, c.hi};
     case 1: return {c.hi, -s.hi};
@@ -224,8 +251,7 @@ double cos(double x) { return sin_cos(x).cos; }
 double tan(double x) {
   const Reduced reduced = reduce(x);
   if (magnitude(x) < kTiny) return x;
-  const Pair s = sin_reduced(reduced.angle);
-  const Pair c = cos_reduced(reduced.angle);
+  const auto [s, c] = sin_cos_reduced(reduced.angle);
   const Pair quotient = reduced.quadrants % 2 == 0 ? divide(s, c) : divide({-c.hi, -c.lo}, s);
   return quotient.hi + quotient.lo;
 }

@@ -1,8 +1,8 @@
 // Elementary functions with the same bits on every CPU: range reduction and polynomials from
 // + - * / and sqrt only, no libm. Accuracy (measured against libm, tests/unit/math): see README.md.
 //
-// Domain errors do not exist: each function states what it returns outside its domain. Arguments must
-// be finite unless said otherwise; a NaN argument is a programmer's error.
+// Domain errors do not exist: each function states what it returns outside its domain. Arguments
+// must be finite unless said otherwise; a NaN argument is a programmer's error.
 #pragma once
 
 namespace surefoot::math {
