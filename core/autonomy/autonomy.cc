@@ -1,0 +1,165 @@
+#include "core/autonomy/autonomy.h"
+
+#include "core/math/elementary.h"
+
+namespace surefoot::autonomy {
+namespace {
+
+std::array<double, 3> to_array(const Vector3& v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& config) {
+  model_ = model;
+  config_ = config;
+  tick_s_ = kTickPeriod.seconds();
+  actuation::ActuationParameters actuation = config.actuation;
+  actuation.silent_after_ticks =
+      static_cast<std::uint32_t>(config.safety.drive_silence_s / tick_s_) + 1;
+  const Status wired = bus_.configure(model, actuation);
+  if (!ok(wired)) return wired;
+  const Status mapped = map_.reset(config.mapping, model);
+  if (!ok(mapped)) return mapped;
+  estimator_.reset(config.estimation, model, tick_s_);
+  history_.clear();
+  mission_.reset(config.mission);
+  stand_up_.reset(config.control.stand_up, model, config.control.body.height_m);
+  locomotion_.reset(config.control, model);
+  outputs_ = TickOutputs{};
+  commands_ = actuation::JointCommands{};
+  walking_ready_ = false;
+  imu_silent_s_ = 0;
+  imu_refused_ = 0;
+  encode_refused_ = 0;
+  return Status::kOk;
+}
+
+void Autonomy::run_control() {
+  receive();
+  const estimation::RobotState& state = estimator_.state();
+  MissionFacts facts;
+  facts.drives_ready = bus_.all_valid() && estimator_.ready();
+  facts.stand_up_done = stand_up_.done();
+  facts.all_in_stance = locomotion_.all_in_stance();
+  facts.fault = find_fault();
+  mission_.update(state, facts, tick_s_);
+  act(state);
+  send();
+  report(state);
+  inputs_ = nullptr;
+}
+
+void Autonomy::receive() {
+  bus_.receive({inputs_->can.data(), inputs_->can.size()});
+  imu_silent_s_ = inputs_->imu.empty() ? imu_silent_s_ + tick_s_ : 0.0;
+  const bool still = mission_.phase() == MissionPhase::kSettle;
+  imu_refused_ += estimator_.update(inputs_->stamp, {inputs_->imu.data(), inputs_->imu.size()},
+                                    bus_.states(), locomotion_.gait_phases(), still);
+  if (walking_ready_) history_.push(estimator_.state());
+}
+
+StopReason Autonomy::find_fault() {
+  if (inputs_->operator_fresh && inputs_->operator_command.emergency_stop) {
+    return StopReason::kOperator;
+  }
+  if (imu_silent_s_ > config_.safety.imu_silence_s) return StopReason::kImuSilent;
+  if (mission_.phase() == MissionPhase::kEnableDrives) return StopReason::kNone;
+  if (bus_.faulty_joints() != 0) return StopReason::kDriveFault;
+  if (bus_.silent_joints() != 0) return StopReason::kDriveSilent;
+  const double cos_tilt = estimator_.state().R_OB(2, 2);
+  if (cos_tilt < math::cos(config_.safety.max_tilt_rad)) return StopReason::kTilt;
+  if (locomotion_.blocked_s() > config_.safety.foothold_patience_s) return StopReason::kNoFoothold;
+  return StopReason::kNone;
+}
+
+const mapping::MapWindow* Autonomy::window() const {
+  return config_.mapping.enabled ? &map_.window() : nullptr;
+}
+
+// Stand-up is over: O gets its place on the ground below the trunk, the start pad enters the map.
+void Autonomy::begin_walking(const estimation::RobotState& state) {
+  estimator_.place(Vector3(0.0, 0.0, config_.control.body.height_m));
+  locomotion_.start(estimator_.state());
+  walking_ready_ = true;
+  mapping::AssumedPad pad;
+  pad.yaw_rad = state.yaw_rad;
+  pad.half_length_m = 0.5 * config_.start_pad.length_m;
+  pad.half_width_m = 0.5 * config_.start_pad.width_m;
+  if (config_.mapping.enabled) SUREFOOT_ASSERT(ok(map_.assume_pad(pad)));
+}
+
+void Autonomy::act(const estimation::RobotState& state) {
+  switch (mission_.phase()) {
+    case MissionPhase::kEnableDrives:
+      break;
+    case MissionPhase::kStandUp:
+      if (mission_.phase_changed()) stand_up_.start(bus_.states());
+      commands_ = stand_up_.update(tick_s_);
+      break;
+    case MissionPhase::kSettle:
+    case MissionPhase::kWalk:
+    case MissionPhase::kArrived:
+      if (!walking_ready_) begin_walking(state);
+      commands_ = locomotion_.update(state, window(), mission_.command(), mission_.stepping(),
+                                     tick_s_);
+      break;
+    case MissionPhase::kStopped:
+      commands_ = bus_.damping_commands();
+      break;
+  }
+}
+
+void Autonomy::send() {
+  outputs_.can.clear();
+  if (mission_.phase() == MissionPhase::kEnableDrives) {
+    if (!ok(bus_.enable(outputs_.can))) ++encode_refused_;
+    return;
+  }
+  if (!ok(bus_.encode(commands_, outputs_.can))) ++encode_refused_;
+}
+
+void Autonomy::report(const estimation::RobotState& state) {
+  Telemetry& telemetry = outputs_.telemetry;
+  telemetry.phase = mission_.phase();
+  telemetry.stop_reason = mission_.stop_reason();
+  telemetry.p_OB_m = to_array(state.p_OB_m);
+  telemetry.q_OB_wxyz = {state.q_OB.w, state.q_OB.x, state.q_OB.y, state.q_OB.z};
+  telemetry.v_OB_m_s = to_array(state.v_OB_m_s);
+  telemetry.angular_velocity_B_rad_s = to_array(state.angular_velocity_B_rad_s);
+  const control::VelocityCommand& command = mission_.command();
+  telemetry.velocity_command_B = {command.forward_m_s, command.left_m_s, command.yaw_rate_rad_s};
+  for (std::size_t i = 0; i < robot::kJoints; ++i) {
+    JointTelemetry& joint = telemetry.joints[i];
+    joint.position_rad = state.joints[i].position_rad;
+    joint.velocity_rad_s = state.joints[i].velocity_rad_s;
+    joint.torque_Nm = state.joints[i].torque_Nm;
+    joint.position_command_rad = commands_[i].position_rad;
+    joint.torque_command_Nm = commands_[i].torque_Nm;
+  }
+  report_legs(state);
+  telemetry.depth_frames_mapped = map_.counters().frames_integrated;
+  telemetry.map_digest = map_.window_digest();
+  telemetry.replies_missed = bus_.counters().missed;
+  telemetry.replies_invalid = bus_.counters().invalid;
+}
+
+void Autonomy::report_legs(const estimation::RobotState& state) {
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    const control::LegStatus& status = locomotion_.legs()[leg];
+    LegTelemetry& telemetry = outputs_.telemetry.legs[leg];
+    telemetry.stance_planned = status.mode != control::LegMode::kSwing;
+    telemetry.contact = state.feet[leg].in_contact;
+    telemetry.foot_O_m = to_array(state.feet[leg].p_O_m);
+    telemetry.force_O_N = to_array(status.force_O_N);
+    telemetry.foothold_nominal_O_m = to_array(status.foothold.nominal_O_m);
+    telemetry.foothold_O_m = to_array(status.foothold.position_O_m);
+    telemetry.foothold_reason = status.foothold.reason;
+  }
+}
+
+bool Autonomy::begin_mapping(const TickInputs& inputs) {
+  if (!inputs.depth_fresh || !walking_ready_) return false;
+  return map_.release(*inputs.depth, history_, estimator_.state().p_OB_m);
+}
+
+}  // namespace surefoot::autonomy

@@ -1,0 +1,74 @@
+// The one aggregate: all state of the robot's mind, statically allocated, driven by the executive
+// through two tasks. `control` runs every tick; `mapping` is slow and published kMapLatencyTicks later.
+//
+// Memory: sizeof(Autonomy), printed per module by `surefoot info`. Nothing allocates. Not copyable in
+// practice: make it a static object of the program.
+#pragma once
+
+#include "core/actuation/joint_bus.h"
+#include "core/autonomy/config.h"
+#include "core/autonomy/map_task.h"
+#include "core/autonomy/mission.h"
+#include "core/autonomy/pose_history.h"
+#include "core/autonomy/tick.h"
+#include "core/control/locomotion.h"
+#include "core/control/stand_up.h"
+#include "core/estimation/estimator.h"
+
+namespace surefoot::autonomy {
+
+inline constexpr TimeNs kTickPeriod = milliseconds(2);
+inline constexpr std::uint32_t kMapLatencyTicks = 5;  // 10 ms from a frame's arrival to its footholds
+
+class Autonomy {
+ public:
+  // Touches every page of the object. kInvalid, kOutOfRange: a module refused its configuration.
+  Status reset(const robot::RobotModel& model, const AutonomyConfig& config);
+
+  // The control task: estimate, decide, command. Every tick.
+  void begin_control(const TickInputs& inputs) { inputs_ = &inputs; }
+  void run_control();
+  void publish_control(TickOutputs& outputs) const { outputs = outputs_; }
+
+  // The mapping task.
+  bool begin_mapping(const TickInputs& inputs);
+  void run_mapping() { map_.run(); }
+  void publish_mapping() { map_.publish(); }
+
+  bool finished() const { return mission_.finished(); }
+  const Mission& mission() const { return mission_; }
+  const estimation::Estimator& estimator() const { return estimator_; }
+  const MapTask& map() const { return map_; }
+  const actuation::JointBus& joint_bus() const { return bus_; }
+
+ private:
+  void receive();
+  StopReason find_fault();
+  void act(const estimation::RobotState& state);
+  void begin_walking(const estimation::RobotState& state);
+  const mapping::MapWindow* window() const;
+  void send();
+  void report(const estimation::RobotState& state);
+  void report_legs(const estimation::RobotState& state);
+
+  robot::RobotModel model_;
+  AutonomyConfig config_;
+  const TickInputs* inputs_ = nullptr;  // of the tick under way
+  TickOutputs outputs_;
+
+  actuation::JointBus bus_;
+  estimation::Estimator estimator_;
+  PoseHistory history_;
+  MapTask map_;
+  Mission mission_;
+  control::StandUp stand_up_;
+  control::Locomotion locomotion_;
+  actuation::JointCommands commands_;
+  bool walking_ready_ = false;     // stand-up is over, O has its place
+  double imu_silent_s_ = 0;
+  double tick_s_ = 0;
+  std::uint64_t imu_refused_ = 0;
+  std::uint64_t encode_refused_ = 0;
+};
+
+}  // namespace surefoot::autonomy

@@ -1,0 +1,95 @@
+// The autonomy's parameters: one group per module, keys as in the robot and mission files.
+#pragma once
+
+#include "core/actuation/joint_bus.h"
+#include "core/base/parameters.h"
+#include "core/control/config.h"
+#include "core/estimation/config.h"
+#include "core/mapping/mapping_config.h"
+
+namespace surefoot::autonomy {
+
+// What is limp, tilted or silent too long ends a mission with a reason instead of a broken robot.
+struct SafetyConfig {
+  double max_tilt_rad = 0;             // beyond: drives go to damping
+  double drive_silence_s = 0;          // no reply of a drive
+  double imu_silence_s = 0;            // no sample
+  double foothold_patience_s = 0;      // no foothold for a leg
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("max_tilt_rad", self.max_tilt_rad, {0.1, 3.2}, "beyond: damping");
+    visit.real("drive_silence_s", self.drive_silence_s, {0.002, 5.0}, "no reply of a drive");
+    visit.real("imu_silence_s", self.imu_silence_s, {0.002, 5.0}, "no sample");
+    visit.real("foothold_patience_s", self.foothold_patience_s, {0.1, 60.0},
+               "no foothold for a leg");
+  }
+};
+
+// The ground the robot stands on when it is switched on: it cannot see it, so the operator vouches for
+// a level pad around the feet (docs/running.md). Any measurement overrides it.
+struct StartPadConfig {
+  double length_m = 0;
+  double width_m = 0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("length_m", self.length_m, {0.0, 4.0}, "along the robot, centred on it");
+    visit.real("width_m", self.width_m, {0.0, 4.0}, "across");
+  }
+};
+
+struct MissionConfig {
+  enum class Kind : std::uint8_t { kStand = 0, kCross };
+  static constexpr const char* kKindNames[] = {"stand", "cross"};
+
+  Kind kind = Kind::kStand;
+  double goal_x_m = 0;             // ahead of the start, along the start's heading
+  double goal_tolerance_m = 0;     // by the robot's own estimate
+  double speed_m_s = 0;
+  double line_gain_1_s = 0;        // back to the line from start to goal
+  double heading_gain_1_s = 0;
+  double max_lateral_m_s = 0;
+  double max_yaw_rate_rad_s = 0;
+  double settle_s = 0;             // standing still before the first step
+  double stand_s = 0;              // mission stand: how long
+  double timeout_s = 0;            // of the whole mission
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.choice("kind", self.kind, kKindNames, "what to do");
+    visit.real("goal_x_m", self.goal_x_m, {0.0, 1000.0}, "ahead of the start");
+    visit.real("goal_tolerance_m", self.goal_tolerance_m, {0.001, 10.0}, "by own estimate");
+    visit.real("speed_m_s", self.speed_m_s, {0.0, 4.0}, "commanded");
+    visit.real("line_gain_1_s", self.line_gain_1_s, {0.0, 10.0}, "back to the line");
+    visit.real("heading_gain_1_s", self.heading_gain_1_s, {0.0, 10.0}, "along the line");
+    visit.real("max_lateral_m_s", self.max_lateral_m_s, {0.0, 2.0}, "sideways");
+    visit.real("max_yaw_rate_rad_s", self.max_yaw_rate_rad_s, {0.0, 5.0}, "turning");
+    visit.real("settle_s", self.settle_s, {0.1, 60.0}, "standing still before the first step");
+    visit.real("stand_s", self.stand_s, {0.0, 3600.0}, "mission stand: how long");
+    visit.real("timeout_s", self.timeout_s, {1.0, 36000.0}, "of the whole mission");
+  }
+};
+
+struct AutonomyConfig {
+  actuation::ActuationParameters actuation;
+  estimation::EstimationConfig estimation;
+  mapping::MappingConfig mapping;
+  control::ControlConfig control;
+  SafetyConfig safety;
+  StartPadConfig start_pad;
+  MissionConfig mission;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.group("actuation", self.actuation);
+    visit.group("estimation", self.estimation);
+    visit.group("mapping", self.mapping);
+    visit.group("control", self.control);
+    visit.group("safety", self.safety);
+    visit.group("start_pad", self.start_pad);
+    visit.group("mission", self.mission);
+  }
+};
+
+}  // namespace surefoot::autonomy

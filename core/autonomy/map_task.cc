@@ -1,0 +1,111 @@
+#include "core/autonomy/map_task.h"
+
+#include "core/robot/kinematics.h"
+
+namespace surefoot::autonomy {
+namespace {
+
+Vector3 from_array(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
+// From the camera's housing (x forward, y left, z up) to its optical frame (x right, y down, z
+// forward).
+Matrix3 optical_axes() {
+  Matrix3 axes;
+  axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return axes;
+}
+
+// In place: a temporary of this size has no business on the stack.
+void clear(mapping::MapWindow& window) {
+  window.stamp = TimeNs{};
+  window.frames = 0;
+  window.cell_size_m = 0;
+  window.first = mapping::CellIndex{};
+  window.cells.fill(mapping::WindowCell{});
+}
+
+}  // namespace
+
+Status MapTask::reset(const mapping::MappingConfig& config, const robot::RobotModel& model) {
+  model_ = model;
+  enabled_ = config.enabled;
+  counters_ = MapTaskCounters{};
+  const robot::SensorMount& mount = model.depth_camera.mount;
+  const auto& rpy = mount.roll_pitch_yaw_rad;
+  X_BC_.rotation.matrix = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]) * optical_axes();
+  X_BC_.origin.m = from_array(mount.position_B_m);
+  const Status status = mapper_.configure(config, mapping::sensor_model(model.depth_camera));
+  if (!ok(status)) return status;
+  // Touch every page now: no page fault may happen in a tick.
+  frame_.depth.fill(0);
+  clear(working_);
+  clear(window_);
+  window_digest_ = window_.digest();
+  return Status::kOk;
+}
+
+Status MapTask::assume_pad(const mapping::AssumedPad& pad) {
+  if (!enabled_) return Status::kUnavailable;
+  const Status status = mapper_.assume(pad);
+  if (!ok(status)) return status;
+  const Status copied = mapper_.publish(pad.x_O_m, pad.y_O_m, window_);
+  window_digest_ = window_.digest();
+  return copied;
+}
+
+bool MapTask::release(const hal::DepthFrame& frame, const PoseHistory& history,
+                      const Vector3& window_centre_O_m) {
+  if (!enabled_) return false;
+  const Result<PastPose> pose = history.at(frame.stamp);
+  if (!pose.ok()) {
+    ++counters_.frames_without_pose;
+    return false;
+  }
+  pose_ = pose.value();
+  frame_ = frame;
+  window_centre_O_m_ = window_centre_O_m;
+  return true;
+}
+
+mapping::SelfModel MapTask::self_model() const {
+  mapping::SelfModel self;
+  self.X_OB.rotation.matrix = geometry::to_matrix(pose_.q_OB);
+  self.X_OB.origin.m = pose_.p_OB_m;
+  self.trunk_size_m = model_.trunk_size_m;
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    Vector3 q;
+    for (std::size_t i = 0; i < robot::kJointsPerLeg; ++i) {
+      q[static_cast<Eigen::Index>(i)] = pose_.joint_rad[robot::joint_index(leg, i)];
+    }
+    const robot::LegPoints points = robot::leg_points_B(model_, leg, q);
+    const double radii[3] = {model_.thigh_radius_m, model_.thigh_radius_m, model_.shank_radius_m};
+    for (std::size_t link = 0; link < 3; ++link) {
+      mapping::SelfCapsule capsule;
+      capsule.a_O_m = self.X_OB.rotation.matrix * points.p_B_m[link] + self.X_OB.origin.m;
+      capsule.b_O_m = self.X_OB.rotation.matrix * points.p_B_m[link + 1] + self.X_OB.origin.m;
+      capsule.radius_m = radii[link];
+      SUREFOOT_ASSERT(ok(self.capsules.push_back(capsule)));
+    }
+  }
+  return self;
+}
+
+void MapTask::run() {
+  const mapping::SelfModel self = self_model();
+  const Status status = mapper_.integrate(frame_, self.X_OB * X_BC_, self);
+  if (ok(status)) {
+    ++counters_.frames_integrated;
+  } else {
+    ++counters_.frames_refused;
+  }
+  if (ok(mapper_.publish(window_centre_O_m_[0], window_centre_O_m_[1], working_))) {
+    working_digest_ = working_.digest();
+  }
+}
+
+void MapTask::publish() {
+  window_ = working_;
+  window_digest_ = working_digest_;
+}
+
+}  // namespace surefoot::autonomy

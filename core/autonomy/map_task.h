@@ -1,0 +1,62 @@
+// The mapping task: slow, released by a depth frame, working on its own copies, published at a fixed
+// later tick (logical execution time). Control never sees the big map, only the published window.
+#pragma once
+
+#include "core/autonomy/pose_history.h"
+#include "core/mapping/mapper.h"
+#include "core/robot/robot_model.h"
+#include "hal/api/depth_camera_port.h"
+
+namespace surefoot::autonomy {
+
+struct MapTaskCounters {
+  std::uint64_t frames_integrated = 0;
+  std::uint64_t frames_without_pose = 0;  // stamp outside the pose history
+  std::uint64_t frames_refused = 0;       // by the mapper: header, order, nothing usable
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("frames_integrated", self.frames_integrated);
+    visit("frames_without_pose", self.frames_without_pose);
+    visit("frames_refused", self.frames_refused);
+  }
+};
+
+class MapTask {
+ public:
+  // kInvalid: configuration out of its domain.
+  Status reset(const mapping::MappingConfig& config, const robot::RobotModel& model);
+
+  // The ground under the standing robot, vouched for by the operator.
+  Status assume_pad(const mapping::AssumedPad& pad);
+
+  // Copies frame and pose. false: mapping is off or the frame's stamp has no pose (counted).
+  bool release(const hal::DepthFrame& frame, const PoseHistory& history,
+               const Vector3& window_centre_O_m);
+  // May run anywhere between release and publish.
+  void run();
+  void publish();
+
+  const mapping::MapWindow& window() const { return window_; }
+  const mapping::Mapper& mapper() const { return mapper_; }
+  const MapTaskCounters& counters() const { return counters_; }
+  std::uint64_t window_digest() const { return window_digest_; }
+
+ private:
+  mapping::SelfModel self_model() const;
+
+  robot::RobotModel model_;
+  bool enabled_ = false;
+  geometry::Pose<geometry::Body, geometry::DepthCamera> X_BC_;
+  hal::DepthFrame frame_{};
+  PastPose pose_;
+  Vector3 window_centre_O_m_ = Vector3::Zero();
+  MapTaskCounters counters_;
+  mapping::Mapper mapper_;
+  mapping::MapWindow working_;  // written by run()
+  std::uint64_t working_digest_ = 0;
+  mapping::MapWindow window_;   // what control sees
+  std::uint64_t window_digest_ = 0;
+};
+
+}  // namespace surefoot::autonomy

@@ -1,0 +1,82 @@
+#include "core/autonomy/mission.h"
+
+#include "core/math/elementary.h"
+
+namespace surefoot::autonomy {
+namespace {
+
+constexpr double kDriveEnable_s = 1.0;   // drives must answer within this time
+constexpr double kArrivedHold_s = 0.5;   // standing at the goal before the mission counts as done
+
+}  // namespace
+
+void Mission::reset(const MissionConfig& config) {
+  *this = Mission{};
+  config_ = config;
+}
+
+void Mission::enter(MissionPhase phase) {
+  phase_ = phase;
+  phase_s_ = 0;
+}
+
+void Mission::stop(StopReason reason) {
+  stop_reason_ = reason;
+  command_ = control::VelocityCommand{};
+  enter(MissionPhase::kStopped);
+}
+
+bool Mission::finished() const {
+  if (phase_ == MissionPhase::kStopped) return true;
+  return phase_ == MissionPhase::kArrived && phase_s_ >= kArrivedHold_s;
+}
+
+void Mission::update(const estimation::RobotState& state, const MissionFacts& facts,
+                     double step_s) {
+  elapsed_s_ += step_s;
+  phase_s_ += step_s;
+  if (phase_ == MissionPhase::kStopped) return;
+  if (facts.fault != StopReason::kNone) return stop(facts.fault);
+  if (phase_ == MissionPhase::kArrived) return;
+  if (elapsed_s_ >= config_.timeout_s) return stop(StopReason::kMissionTimeout);
+
+  switch (phase_) {
+    case MissionPhase::kEnableDrives:
+      if (facts.drives_ready) return enter(MissionPhase::kStandUp);
+      if (phase_s_ > kDriveEnable_s) return stop(StopReason::kDriveSilent);
+      break;
+    case MissionPhase::kStandUp:
+      if (facts.stand_up_done) return enter(MissionPhase::kSettle);
+      break;
+    case MissionPhase::kSettle: {
+      const bool stand = config_.kind == MissionConfig::Kind::kStand;
+      if (stand && phase_s_ >= config_.stand_s) return enter(MissionPhase::kArrived);
+      if (!stand && phase_s_ >= config_.settle_s) return enter(MissionPhase::kWalk);
+      break;
+    }
+    case MissionPhase::kWalk:
+      steer(state);
+      if (state.p_OB_m[0] >= config_.goal_x_m - config_.goal_tolerance_m) {
+        command_ = control::VelocityCommand{};
+        return enter(MissionPhase::kArrived);
+      }
+      break;
+    case MissionPhase::kArrived:
+    case MissionPhase::kStopped:
+      break;
+  }
+}
+
+// Along the line y = 0 of O towards the goal.
+void Mission::steer(const estimation::RobotState& state) {
+  const double sideways = math::clamp(-config_.line_gain_1_s * state.p_OB_m[1],
+                                      -config_.max_lateral_m_s, config_.max_lateral_m_s);
+  // The command is in the body's heading: turn the wanted velocity of the line into it.
+  const math::SinCos yaw = math::sin_cos(state.yaw_rad);
+  command_.forward_m_s = yaw.cos * config_.speed_m_s + yaw.sin * sideways;
+  command_.left_m_s = yaw.cos * sideways - yaw.sin * config_.speed_m_s;
+  command_.yaw_rate_rad_s = math::clamp(-config_.heading_gain_1_s * state.yaw_rad,
+                                        -config_.max_yaw_rate_rad_s, config_.max_yaw_rate_rad_s);
+}
+
+}  // namespace surefoot::autonomy

@@ -1,0 +1,45 @@
+// What the robot is about to do: from enabling its drives to standing at the goal, or stopping with a
+// reason. A flat state machine on the estimator's state; no knowledge of legs.
+#pragma once
+
+#include "core/autonomy/config.h"
+#include "core/autonomy/tick.h"
+#include "core/control/foothold.h"
+#include "core/estimation/estimator.h"
+
+namespace surefoot::autonomy {
+
+// What the mission needs to know beside the state.
+struct MissionFacts {
+  bool drives_ready = false;    // every drive answers
+  bool stand_up_done = false;
+  bool all_in_stance = false;
+  StopReason fault = StopReason::kNone;
+};
+
+class Mission {
+ public:
+  void reset(const MissionConfig& config);
+  void update(const estimation::RobotState& state, const MissionFacts& facts, double step_s);
+
+  MissionPhase phase() const { return phase_; }
+  bool phase_changed() const { return phase_s_ == 0.0; }  // first tick of a phase
+  StopReason stop_reason() const { return stop_reason_; }
+  const control::VelocityCommand& command() const { return command_; }
+  bool stepping() const { return phase_ == MissionPhase::kWalk; }
+  bool finished() const;
+
+ private:
+  void enter(MissionPhase phase);
+  void stop(StopReason reason);
+  void steer(const estimation::RobotState& state);
+
+  MissionConfig config_;
+  MissionPhase phase_ = MissionPhase::kEnableDrives;
+  StopReason stop_reason_ = StopReason::kNone;
+  control::VelocityCommand command_;
+  double elapsed_s_ = 0;
+  double phase_s_ = 0;
+};
+
+}  // namespace surefoot::autonomy

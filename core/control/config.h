@@ -1,0 +1,151 @@
+// Parameters of walking.
+#pragma once
+
+#include <array>
+
+#include "core/base/parameters.h"
+#include "core/robot/robot_model.h"
+
+namespace surefoot::control {
+
+struct GaitConfig {
+  double period_s = 0;
+  double stance_share = 0;                              // of the period, per leg
+  std::array<double, robot::kLegs> offset{};  // share of the period, FR FL HR HL
+
+  double stance_s() const { return period_s * stance_share; }
+  double swing_s() const { return period_s * (1.0 - stance_share); }
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("period_s", self.period_s, {0.1, 3.0}, "one step of every leg");
+    visit.real("stance_share", self.stance_share, {0.3, 0.95}, "of the period, per leg");
+    visit.reals("offset", self.offset, {0.0, 1.0}, "share of the period, FR FL HR HL");
+  }
+};
+
+struct FootholdConfig {
+  double velocity_feedback_s = 0;     // k of the Raibert rule
+  double max_offset_m = 0;            // from the hip's point, each axis
+  double lateral_offset_m = 0;        // outwards of the hip's point
+  double search_radius_m = 0;         // how far a foothold may be moved
+  double margin_weight_m = 0;         // detour that one more cell of distance from an edge is worth
+  double lock_progress = 0;           // no change of target after this share of a swing
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("velocity_feedback_s", self.velocity_feedback_s, {0.0, 1.0}, "Raibert gain k");
+    visit.real("max_offset_m", self.max_offset_m, {0.0, 0.6}, "from the hip's point, each axis");
+    visit.real("lateral_offset_m", self.lateral_offset_m, {-0.2, 0.2}, "outwards of the hip's point");
+    visit.real("search_radius_m", self.search_radius_m, {0.0, 0.4}, "how far a foothold may move");
+    visit.real("margin_weight_m", self.margin_weight_m, {0.0, 0.1},
+               "detour that one more cell of distance from an edge is worth");
+    visit.real("lock_progress", self.lock_progress, {0.0, 1.0}, "target fixed after this share");
+  }
+};
+
+struct SwingConfig {
+  double clearance_m = 0;             // above the highest ground between lift-off and landing
+  double search_speed_m_s = 0;        // downwards, when the ground is not where it was expected
+  double search_depth_m = 0;          // at most this far below the expected landing
+  std::array<double, 3> kp_Nm_rad{};  // abad, hip, knee
+  std::array<double, 3> kd_Nm_s_rad{};
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("clearance_m", self.clearance_m, {0.0, 0.3}, "above the highest ground on the way");
+    visit.real("search_speed_m_s", self.search_speed_m_s, {0.0, 2.0}, "downwards, no ground found");
+    visit.real("search_depth_m", self.search_depth_m, {0.0, 0.5}, "below the expected landing");
+    visit.reals("kp_Nm_rad", self.kp_Nm_rad, {0.0, 500.0}, "abad, hip, knee");
+    visit.reals("kd_Nm_s_rad", self.kd_Nm_s_rad, {0.0, 20.0}, "abad, hip, knee");
+  }
+};
+
+struct BodyConfig {
+  double height_m = 0;                         // B above the ground between the feet
+  std::array<double, 3> position_gain_1_s2{};  // O axes
+  std::array<double, 3> velocity_gain_1_s{};
+  std::array<double, 3> attitude_gain_1_s2{};  // roll, pitch, yaw
+  std::array<double, 3> rate_gain_1_s{};
+  std::array<double, 3> inertia_kg_m2{};       // whole robot about B, B axes
+  double ground_filter_s = 0;                  // time constant of ground height and slope
+  double slope_share = 0;                      // of the ground's slope that the trunk follows
+  double max_acceleration_m_s2 = 0;            // of the commanded velocity
+  double max_reference_error_m = 0;            // the position reference waits for the body
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("height_m", self.height_m, {0.05, 2.0}, "B above the ground between the feet");
+    visit.reals("position_gain_1_s2", self.position_gain_1_s2, {0.0, 1000.0}, "x, y, z");
+    visit.reals("velocity_gain_1_s", self.velocity_gain_1_s, {0.0, 200.0}, "x, y, z");
+    visit.reals("attitude_gain_1_s2", self.attitude_gain_1_s2, {0.0, 2000.0}, "roll, pitch, yaw");
+    visit.reals("rate_gain_1_s", self.rate_gain_1_s, {0.0, 200.0}, "roll, pitch, yaw");
+    visit.reals("inertia_kg_m2", self.inertia_kg_m2, {1e-4, 100.0}, "whole robot, x y z");
+    visit.real("ground_filter_s", self.ground_filter_s, {0.001, 5.0}, "time constant");
+    visit.real("slope_share", self.slope_share, {0.0, 1.0}, "of the slope the trunk follows");
+    visit.real("max_acceleration_m_s2", self.max_acceleration_m_s2, {0.01, 20.0}, "of the command");
+    visit.real("max_reference_error_m", self.max_reference_error_m, {0.001, 1.0},
+               "the position reference waits for the body");
+  }
+};
+
+struct ForceConfig {
+  double friction = 0;                        // the pyramid the controller stays inside
+  double min_normal_N = 0;                    // of a foot in contact
+  double max_normal_N = 0;
+  std::array<double, 3> force_weight{};       // x, y, z of the wrench's error
+  std::array<double, 3> moment_weight{};
+  double effort_weight = 0;                   // on the forces themselves
+  double change_weight = 0;                   // on their change from the last tick
+  double stance_kd_Nm_s_rad = 0;              // joint damping under load
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("friction", self.friction, {0.05, 2.0}, "pyramid half-width over normal force");
+    visit.real("min_normal_N", self.min_normal_N, {0.0, 1000.0}, "of a foot in contact");
+    visit.real("max_normal_N", self.max_normal_N, {1.0, 5000.0}, "of a foot in contact");
+    visit.reals("force_weight", self.force_weight, {0.0, 1000.0}, "x, y, z");
+    visit.reals("moment_weight", self.moment_weight, {0.0, 10000.0}, "x, y, z");
+    visit.real("effort_weight", self.effort_weight, {1e-6, 10.0}, "on the forces");
+    visit.real("change_weight", self.change_weight, {0.0, 10.0}, "on their change");
+    visit.real("stance_kd_Nm_s_rad", self.stance_kd_Nm_s_rad, {0.0, 20.0}, "joint damping");
+  }
+};
+
+struct StandUpConfig {
+  double fold_s = 0;                          // to the folded pose
+  double rise_s = 0;                          // to standing
+  std::array<double, 3> folded_rad{};         // abad, hip, knee
+  double kp_Nm_rad = 0;
+  double kd_Nm_s_rad = 0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("fold_s", self.fold_s, {0.1, 20.0}, "to the folded pose");
+    visit.real("rise_s", self.rise_s, {0.1, 20.0}, "from folded to standing");
+    visit.reals("folded_rad", self.folded_rad, {-6.3, 6.3}, "abad, hip, knee");
+    visit.real("kp_Nm_rad", self.kp_Nm_rad, {0.0, 500.0}, "joint stiffness");
+    visit.real("kd_Nm_s_rad", self.kd_Nm_s_rad, {0.0, 20.0}, "joint damping");
+  }
+};
+
+struct ControlConfig {
+  GaitConfig gait;
+  FootholdConfig foothold;
+  SwingConfig swing;
+  BodyConfig body;
+  ForceConfig force;
+  StandUpConfig stand_up;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.group("gait", self.gait);
+    visit.group("foothold", self.foothold);
+    visit.group("swing", self.swing);
+    visit.group("body", self.body);
+    visit.group("force", self.force);
+    visit.group("stand_up", self.stand_up);
+  }
+};
+
+}  // namespace surefoot::control

@@ -1,0 +1,63 @@
+#include "core/control/foothold.h"
+
+#include "core/mapping/foothold.h"
+#include "core/math/elementary.h"
+#include "core/robot/kinematics.h"
+
+namespace surefoot::control {
+
+void FootholdPlanner::reset(const FootholdConfig& config, const robot::RobotModel& model) {
+  config_ = config;
+  model_ = model;
+}
+
+Vector3 FootholdPlanner::nominal_O_m(std::size_t leg, const estimation::RobotState& state,
+                                     const VelocityCommand& command, double until_touchdown_s,
+                                     double stance_s, double ground_z_m) const {
+  const double yaw_at_touchdown = state.yaw_rad + command.yaw_rate_rad_s * until_touchdown_s;
+  const math::SinCos yaw = math::sin_cos(yaw_at_touchdown);
+  const Vector2 wanted(yaw.cos * command.forward_m_s - yaw.sin * command.left_m_s,
+                       yaw.sin * command.forward_m_s + yaw.cos * command.left_m_s);
+  const Vector2 velocity = state.v_OB_m_s.head<2>();
+  const double limit = config_.max_offset_m;
+  Vector2 symmetry =
+      velocity * (0.5 * stance_s) + (velocity - wanted) * config_.velocity_feedback_s;
+  symmetry[0] = math::clamp(symmetry[0], -limit, limit);
+  symmetry[1] = math::clamp(symmetry[1], -limit, limit);
+
+  Vector3 hip_B = robot::hip_joint_B_m(model_, leg);
+  hip_B[1] += robot::left_sign(leg) * config_.lateral_offset_m;
+  const Vector2 shoulder(yaw.cos * hip_B[0] - yaw.sin * hip_B[1],
+                         yaw.sin * hip_B[0] + yaw.cos * hip_B[1]);
+  const Vector2 point =
+      state.p_OB_m.head<2>() + velocity * until_touchdown_s + shoulder + symmetry;
+  return {point[0], point[1], ground_z_m + model_.foot_radius_m};
+}
+
+Foothold FootholdPlanner::choose(const Vector3& nominal_O_m,
+                                 const mapping::MapWindow* window) const {
+  Foothold foothold;
+  foothold.nominal_O_m = nominal_O_m;
+  foothold.position_O_m = nominal_O_m;
+  if (window == nullptr) {
+    foothold.reason = autonomy::FootholdReason::kMapOff;
+    return foothold;
+  }
+  mapping::FootholdQuery query;
+  query.x_O_m = nominal_O_m[0];
+  query.y_O_m = nominal_O_m[1];
+  query.max_radius_m = config_.search_radius_m;
+  query.margin_weight_m = config_.margin_weight_m;
+  const Result<mapping::Foothold> found = mapping::find_foothold(*window, query);
+  if (!found.ok()) {
+    foothold.reason = autonomy::FootholdReason::kNone;
+    return foothold;
+  }
+  const mapping::Foothold& place = found.value();
+  foothold.position_O_m = {place.x_O_m, place.y_O_m, place.z_O_m + model_.foot_radius_m};
+  foothold.reason = place.moved ? autonomy::FootholdReason::kMoved
+                                : autonomy::FootholdReason::kNominal;
+  return foothold;
+}
+
+}  // namespace surefoot::control

@@ -1,0 +1,94 @@
+// Trotting over ground that the map shows: gait clock, footholds, swing legs, stance forces.
+//
+// In: the estimator's RobotState, the published map window (or none), a velocity command.
+// Out: twelve joint commands for this tick, and for each leg what it is about.
+//
+// Each leg is in one of three modes:
+//   stance  carries load: torque from the force distribution, light joint damping
+//   swing   follows a path to its foothold under joint stiffness
+//   search  should stand but feels no ground: moves straight down until it does or the depth is used up
+// A swing begins when the gait says so and a foothold exists; without one the leg stays in stance for
+// this cycle, the reason is reported and the body slows down (blocked_s()).
+//
+// Cost per tick: one force QP, four leg Jacobians, at most two foothold searches. No allocation.
+#pragma once
+
+#include <array>
+
+#include "core/actuation/joint_bus.h"
+#include "core/control/body_reference.h"
+#include "core/control/config.h"
+#include "core/control/foothold.h"
+#include "core/control/force_distribution.h"
+#include "core/control/gait.h"
+#include "core/control/swing.h"
+#include "core/estimation/estimator.h"
+#include "core/mapping/map_window.h"
+#include "core/robot/robot_model.h"
+
+namespace surefoot::control {
+
+enum class LegMode : std::uint8_t { kStance = 0, kSwing, kSearch };
+
+struct LegStatus {
+  LegMode mode = LegMode::kStance;
+  double swing_progress = 0;
+  SwingPath path;
+  Foothold foothold;
+  double searched_m = 0;                   // depth below the expected landing
+  Vector3 anchor_O_m = Vector3::Zero();    // where a search began
+  Vector3 force_O_N = Vector3::Zero();     // commanded, ground on foot
+  bool skipped_swing = false;              // no foothold: stays in stance during this planned swing
+  bool landed_early = false;               // touched down before the planned end of this swing
+};
+
+class Locomotion {
+ public:
+  void reset(const ControlConfig& config, const robot::RobotModel& model);
+
+  // All legs in stance at the present pose: call once when stand-up is done.
+  void start(const estimation::RobotState& state);
+
+  // stepping: false holds the robot in four-legged stance (swings under way are finished).
+  const actuation::JointCommands& update(const estimation::RobotState& state,
+                                         const mapping::MapWindow* window,
+                                         const VelocityCommand& command, bool stepping,
+                                         double step_s);
+
+  const std::array<LegStatus, robot::kLegs>& legs() const { return legs_; }
+  // What the contact estimator needs to know of the plan.
+  std::array<estimation::GaitPhase, robot::kLegs> gait_phases() const;
+  bool all_in_stance() const;
+  // How long a leg has been without a foothold, 0 when every leg has one.
+  double blocked_s() const { return blocked_s_; }
+  const BodyReference& reference() const { return reference_; }
+
+ private:
+  void advance_gait(bool stepping, double step_s);
+  void advance_leg(std::size_t leg, const estimation::RobotState& state,
+                   const mapping::MapWindow* window, bool stepping, double step_s);
+  void try_swing(std::size_t leg, const estimation::RobotState& state,
+                 const mapping::MapWindow* window);
+  void follow_foothold(std::size_t leg, const estimation::RobotState& state,
+                       const mapping::MapWindow* window);
+  void set_path(std::size_t leg, const mapping::MapWindow* window);
+  void distribute_forces(const estimation::RobotState& state);
+  void command_stance(std::size_t leg, const estimation::RobotState& state);
+  void command_foot(std::size_t leg, const estimation::RobotState& state,
+                    const SwingPoint& target);
+
+  ControlConfig config_;
+  robot::RobotModel model_;
+  Gait gait_;
+  FootholdPlanner footholds_;
+  ForceDistribution forces_;
+  BodyReferenceTracker tracker_;
+  BodyReference reference_;
+  VelocityCommand command_;  // ramped
+  bool gait_running_ = false;
+  double blocked_s_ = 0;
+  std::array<LegStatus, robot::kLegs> legs_;
+  actuation::JointCommands joints_;
+};
+
+}  // namespace surefoot::control

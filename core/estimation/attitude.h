@@ -1,0 +1,55 @@
+// Attitude from gyro and accelerometer: R_OB, and the gyro bias.
+//
+// The gyro is integrated as rotation vectors; the accelerometer's "up" pulls roll and pitch back with a
+// first-order gain and teaches the gyro bias with an integral gain (explicit complementary filter,
+// Mahony, Hamel, Pflimlin, IEEE TAC 2008, eq. 32). Yaw has no reference: it drifts with the gyro.
+// While the robot stands still the bias of all three axes is learned directly.
+#pragma once
+
+#include "core/base/status.h"
+#include "core/base/time.h"
+#include "core/estimation/config.h"
+#include "core/geometry/rotations.h"
+#include "core/math/linear.h"
+#include "core/robot/robot_model.h"
+#include "hal/api/imu_port.h"
+
+namespace surefoot::estimation {
+
+inline constexpr double kGravity_m_s2 = 9.81;
+
+class AttitudeEstimator {
+ public:
+  void reset(const AttitudeConfig& config, const robot::ImuSpecification& imu);
+
+  // Takes the next sample. The first one sets roll and pitch from its specific force, yaw = 0.
+  // kInvalid: a value is not finite, or the stamp is not after the last one; nothing changed.
+  Status update(const hal::ImuSample& sample, bool standing_still);
+
+  bool initialised() const { return initialised_; }
+  const geometry::Quaternion& q_OB() const { return q_OB_; }
+  const Matrix3& R_OB() const { return R_OB_; }
+  // Bias removed.
+  const Vector3& angular_velocity_B_rad_s() const { return angular_velocity_B_rad_s_; }
+  // At the trunk's origin: the lever arm's centripetal part is removed.
+  const Vector3& specific_force_B_m_s2() const { return specific_force_B_m_s2_; }
+  const Vector3& gyro_bias_B_rad_s() const { return gyro_bias_B_rad_s_; }
+  TimeNs stamp() const { return stamp_; }
+
+ private:
+  void initialise(const Vector3& specific_force_B_m_s2);
+  Vector3 gravity_correction(const Vector3& specific_force_B_m_s2) const;
+
+  AttitudeConfig config_;
+  Matrix3 R_BI_ = Matrix3::Identity();
+  Vector3 p_BI_m_ = Vector3::Zero();
+  bool initialised_ = false;
+  TimeNs stamp_;
+  geometry::Quaternion q_OB_;
+  Matrix3 R_OB_ = Matrix3::Identity();
+  Vector3 angular_velocity_B_rad_s_ = Vector3::Zero();
+  Vector3 specific_force_B_m_s2_ = Vector3::Zero();
+  Vector3 gyro_bias_B_rad_s_ = Vector3::Zero();
+};
+
+}  // namespace surefoot::estimation

@@ -1,0 +1,76 @@
+// Parameters of the state estimator.
+#pragma once
+
+#include "core/base/parameters.h"
+
+namespace surefoot::estimation {
+
+struct AttitudeConfig {
+  double correction_gain_1_s = 0;        // pull of the accelerometer's "up" on roll and pitch
+  double bias_gain_1_s2 = 0;             // the same error's pull on the gyro bias
+  double max_gravity_error_m_s2 = 0;     // no correction when | |f| - g | exceeds this
+  double still_bias_gain_1_s = 0;        // bias = low-pass of the gyro while standing still
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("correction_gain_1_s", self.correction_gain_1_s, {0.0, 10.0},
+               "pull of the accelerometer on roll and pitch");
+    visit.real("bias_gain_1_s2", self.bias_gain_1_s2, {0.0, 10.0}, "the same error on the gyro bias");
+    visit.real("max_gravity_error_m_s2", self.max_gravity_error_m_s2, {0.1, 20.0},
+               "no correction when | |f| - g | exceeds this");
+    visit.real("still_bias_gain_1_s", self.still_bias_gain_1_s, {0.0, 20.0},
+               "gyro bias low-pass while standing still");
+  }
+};
+
+struct ContactConfig {
+  double observer_gain_1_s = 0;          // bandwidth of the momentum observer
+  double touchdown_force_N = 0;          // above: contact begins
+  double lift_off_force_N = 0;           // below: contact ends
+  double earliest_swing_phase = 0;       // no touchdown before this share of a swing
+  int confirm_ticks = 0;                 // consecutive ticks above the threshold
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("observer_gain_1_s", self.observer_gain_1_s, {1.0, 1000.0}, "momentum observer");
+    visit.real("touchdown_force_N", self.touchdown_force_N, {0.1, 500.0}, "above: contact begins");
+    visit.real("lift_off_force_N", self.lift_off_force_N, {0.0, 500.0}, "below: contact ends");
+    visit.real("earliest_swing_phase", self.earliest_swing_phase, {0.0, 1.0},
+               "no touchdown before this share of a swing");
+    visit.integer("confirm_ticks", self.confirm_ticks, {1, 50}, "consecutive ticks required");
+  }
+};
+
+struct BodyStateConfig {
+  double accelerometer_noise_m_s2_sqrtHz = 0;
+  double foot_position_noise_m = 0;      // forward kinematics, per measurement
+  double foot_velocity_noise_m_s = 0;    // encoder velocities, foot deformation
+  double foot_slip_noise_m_sqrt_s = 0;   // random walk of a foot in contact
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("accelerometer_noise_m_s2_sqrtHz", self.accelerometer_noise_m_s2_sqrtHz, {1e-5, 10.0},
+               "noise density, vibration included");
+    visit.real("foot_position_noise_m", self.foot_position_noise_m, {1e-5, 0.1},
+               "of forward kinematics");
+    visit.real("foot_velocity_noise_m_s", self.foot_velocity_noise_m_s, {1e-4, 5.0},
+               "of a foot in contact");
+    visit.real("foot_slip_noise_m_sqrt_s", self.foot_slip_noise_m_sqrt_s, {0.0, 1.0},
+               "random walk of a foot in contact");
+  }
+};
+
+struct EstimationConfig {
+  AttitudeConfig attitude;
+  ContactConfig contact;
+  BodyStateConfig body;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.group("attitude", self.attitude);
+    visit.group("contact", self.contact);
+    visit.group("body", self.body);
+  }
+};
+
+}  // namespace surefoot::estimation

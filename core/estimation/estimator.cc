@@ -1,0 +1,87 @@
+#include "core/estimation/estimator.h"
+
+#include "core/math/elementary.h"
+#include "core/robot/kinematics.h"
+
+namespace surefoot::estimation {
+
+void Estimator::reset(const EstimationConfig& config, const robot::RobotModel& model,
+                      double tick_s) {
+  model_ = model;
+  tick_s_ = tick_s;
+  attitude_.reset(config.attitude, model.imu);
+  contact_.reset(config.contact, model, tick_s);
+  body_.reset(config.body);
+  state_ = RobotState{};
+}
+
+void Estimator::place(const Vector3& p_OB_m) {
+  body_.initialise(p_OB_m);
+  state_.p_OB_m = p_OB_m;
+  state_.v_OB_m_s.setZero();
+}
+
+std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
+                              const std::array<actuation::JointState, robot::kJoints>& joints,
+                              const std::array<GaitPhase, robot::kLegs>& gait,
+                              bool standing_still) {
+  std::size_t refused = 0;
+  for (const hal::ImuSample& sample : imu) {
+    if (!ok(attitude_.update(sample, standing_still))) ++refused;
+  }
+  state_.stamp = stamp;
+  state_.joints = joints;
+  if (!attitude_.initialised()) return refused;
+  state_.q_OB = attitude_.q_OB();
+  state_.R_OB = attitude_.R_OB();
+  state_.angular_velocity_B_rad_s = attitude_.angular_velocity_B_rad_s();
+  state_.yaw_rad = math::atan2(state_.R_OB(1, 0), state_.R_OB(0, 0));
+
+  contact_.update(joints, gait, state_.R_OB);
+  const auto observations = observe_feet();
+  const Vector3 acceleration_O =
+      state_.R_OB * attitude_.specific_force_B_m_s2() - Vector3(0.0, 0.0, kGravity_m_s2);
+  body_.update(acceleration_O, observations, tick_s_);
+
+  state_.p_OB_m = body_.p_OB_m();
+  state_.v_OB_m_s = body_.v_OB_m_s();
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    state_.feet[leg].p_O_m = state_.p_OB_m + observations[leg].from_body_O_m;
+  }
+  return refused;
+}
+
+std::array<FootObservation, robot::kLegs> Estimator::observe_feet() {
+  std::array<FootObservation, robot::kLegs> observations;
+  const Vector3& omega_B = state_.angular_velocity_B_rad_s;
+  const Vector3 contact_to_centre_O(0.0, 0.0, model_.foot_radius_m);
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    Vector3 q;
+    Vector3 qd;
+    for (std::size_t i = 0; i < robot::kJointsPerLeg; ++i) {
+      const actuation::JointState& joint = state_.joints[robot::joint_index(leg, i)];
+      q[static_cast<Eigen::Index>(i)] = joint.position_rad;
+      qd[static_cast<Eigen::Index>(i)] = joint.velocity_rad_s;
+    }
+    FootState& foot = state_.feet[leg];
+    foot.p_B_m = robot::foot_position_B_m(model_, leg, q);
+    foot.jacobian_B = robot::foot_jacobian_B(model_, leg, q);
+    foot.v_B_m_s = foot.jacobian_B * qd;
+    const FootContact& contact = contact_.feet()[leg];
+    foot.in_contact = contact.in_contact;
+    foot.ticks_since_change = contact.ticks_since_change;
+    foot.force_O_N = contact.force_O_N;
+
+    FootObservation& observation = observations[leg];
+    observation.in_contact = contact.in_contact;
+    observation.from_body_O_m = state_.R_OB * foot.p_B_m;
+    observation.velocity_from_body_O_m_s =
+        state_.R_OB * (foot.v_B_m_s + omega_B.cross(foot.p_B_m));
+    const Vector3 shank_omega_O =
+        state_.R_OB * (omega_B + robot::shank_angular_velocity_B(q, qd));
+    observation.rolling_velocity_O_m_s = shank_omega_O.cross(contact_to_centre_O);
+  }
+  return observations;
+}
+
+}  // namespace surefoot::estimation

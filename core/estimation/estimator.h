@@ -1,0 +1,68 @@
+// The state estimator: attitude, contacts, position and velocity, once per tick, from IMU samples and
+// joint states alone.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "core/actuation/joint_bus.h"
+#include "core/estimation/attitude.h"
+#include "core/estimation/body_state.h"
+#include "core/estimation/config.h"
+#include "core/estimation/contact.h"
+#include "core/geometry/frames.h"
+#include "core/robot/robot_model.h"
+
+namespace surefoot::estimation {
+
+struct FootState {
+  Vector3 p_B_m = Vector3::Zero();    // centre of the foot sphere
+  Vector3 v_B_m_s = Vector3::Zero();  // relative to the trunk
+  Matrix3 jacobian_B = Matrix3::Zero();
+  Vector3 p_O_m = Vector3::Zero();
+  bool in_contact = false;
+  std::uint32_t ticks_since_change = 0;
+  Vector3 force_O_N = Vector3::Zero();
+};
+
+// Everything the controllers know of the body.
+struct RobotState {
+  TimeNs stamp;
+  Vector3 p_OB_m = Vector3::Zero();
+  Vector3 v_OB_m_s = Vector3::Zero();  // of B's origin, in O
+  geometry::Quaternion q_OB;
+  Matrix3 R_OB = Matrix3::Identity();
+  Vector3 angular_velocity_B_rad_s = Vector3::Zero();
+  double yaw_rad = 0;
+  std::array<FootState, robot::kLegs> feet;
+  std::array<actuation::JointState, robot::kJoints> joints;
+};
+
+class Estimator {
+ public:
+  void reset(const EstimationConfig& config, const robot::RobotModel& model, double tick_s);
+
+  // imu: samples of this tick, oldest first. Returns how many were refused (not finite, out of order).
+  std::size_t update(TimeNs stamp, std::span<const hal::ImuSample> imu,
+                     const std::array<actuation::JointState, robot::kJoints>& joints,
+                     const std::array<GaitPhase, robot::kLegs>& gait, bool standing_still);
+
+  // Declares where the trunk is: O's origin lies on the ground below it.
+  void place(const Vector3& p_OB_m);
+
+  const RobotState& state() const { return state_; }
+  bool ready() const { return attitude_.initialised(); }
+  const Vector3& gyro_bias_B_rad_s() const { return attitude_.gyro_bias_B_rad_s(); }
+
+ private:
+  std::array<FootObservation, robot::kLegs> observe_feet();
+
+  robot::RobotModel model_;
+  double tick_s_ = 0;
+  AttitudeEstimator attitude_;
+  ContactEstimator contact_;
+  BodyStateEstimator body_;
+  RobotState state_;
+};
+
+}  // namespace surefoot::estimation

@@ -1,0 +1,115 @@
+#include "core/robot/kinematics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/random.h"
+
+namespace surefoot::robot {
+namespace {
+
+RobotModel mini_cheetah() {
+  RobotModel model;
+  model.abad_x_m = 0.19;
+  model.abad_y_m = 0.049;
+  model.hip_offset_m = 0.062;
+  model.thigh_length_m = 0.209;
+  model.knee_offset_m = 0.004;
+  model.shank_length_m = 0.195;
+  return model;
+}
+
+LegVector random_angles(Random& random) {
+  LegVector q;
+  q[0] = random.uniform(-0.8, 0.8);
+  q[1] = random.uniform(-1.5, 0.6);
+  q[2] = random.uniform(0.3, 2.6);
+  return q;
+}
+
+TEST(Kinematics, ZeroAnglesHangStraightDown) {
+  const RobotModel model = mini_cheetah();
+  const Vector3 foot = foot_position_B_m(model, kHindLeft, LegVector::Zero());
+  EXPECT_NEAR(foot[0], -0.19, 1e-15);
+  EXPECT_NEAR(foot[1], 0.049 + 0.062 + 0.004, 1e-15);
+  EXPECT_NEAR(foot[2], -0.404, 1e-15);
+}
+
+// research: stand (0, -0.8, 1.6) puts the foot 0.2815 m below the hip.
+TEST(Kinematics, StandPoseMatchesThePublishedHeight) {
+  const Vector3 foot = foot_position_B_m(mini_cheetah(), kFrontRight, {0.0, -0.8, 1.6});
+  EXPECT_NEAR(foot[2], -0.2815, 1e-4);
+}
+
+TEST(Kinematics, JacobianAgreesWithFiniteDifferences) {
+  const RobotModel model = mini_cheetah();
+  Random random(1);
+  constexpr double kStep = 1e-6;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const std::size_t leg = random.below(4);
+    const LegVector q = random_angles(random);
+    const Matrix3 jacobian = foot_jacobian_B(model, leg, q);
+    for (int joint = 0; joint < 3; ++joint) {
+      LegVector plus = q;
+      LegVector minus = q;
+      plus[joint] += kStep;
+      minus[joint] -= kStep;
+      const Vector3 difference =
+          (foot_position_B_m(model, leg, plus) - foot_position_B_m(model, leg, minus)) / (2 * kStep);
+      EXPECT_LT((difference - jacobian.col(joint)).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(Kinematics, SolveInvertsForwardKinematics) {
+  const RobotModel model = mini_cheetah();
+  Random random(2);
+  for (int trial = 0; trial < 5000; ++trial) {
+    const std::size_t leg = random.below(4);
+    const LegVector q = random_angles(random);
+    const LegSolution solution = solve_leg(model, leg, foot_position_B_m(model, leg, q));
+    EXPECT_EQ(solution.status, Status::kOk);
+    EXPECT_LT((solution.q_rad - q).norm(), 1e-9) << q.transpose();
+  }
+}
+
+TEST(Kinematics, TargetsOutOfReachArePulledOntoTheShellAndReported) {
+  const RobotModel model = mini_cheetah();
+  const Vector3 hip = hip_joint_B_m(model, kFrontLeft);
+  const Vector3 target = hip + Vector3(0.3, 0.0, -0.5);
+  const LegSolution solution = solve_leg(model, kFrontLeft, target);
+  EXPECT_EQ(solution.status, Status::kOutOfRange);
+  const Vector3 reached = foot_position_B_m(model, kFrontLeft, solution.q_rad) - hip;
+  EXPECT_NEAR(reached.norm(), 0.403, 1e-9);
+  EXPECT_NEAR(reached.normalized().dot((target - hip).normalized()), 1.0, 1e-9);
+}
+
+TEST(Kinematics, ATargetOnTheAbductionAxisStillGivesFiniteAngles) {
+  const RobotModel model = mini_cheetah();
+  const LegSolution solution =
+      solve_leg(model, kHindRight, abduction_joint_B_m(model, kHindRight));
+  EXPECT_EQ(solution.status, Status::kOutOfRange);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(std::isfinite(solution.q_rad[i]));
+}
+
+TEST(Kinematics, ShankAngularVelocityAgreesWithTheMovingKneeAndFoot) {
+  const RobotModel model = mini_cheetah();
+  Random random(3);
+  constexpr double kStep = 1e-6;
+  for (int trial = 0; trial < 500; ++trial) {
+    const LegVector q = random_angles(random);
+    LegVector qd;
+    for (int i = 0; i < 3; ++i) qd[i] = random.uniform(-5.0, 5.0);
+    const LegPoints now = leg_points_B(model, kFrontLeft, q);
+    const LegPoints next = leg_points_B(model, kFrontLeft, q + qd * kStep);
+    const LegPoints last = leg_points_B(model, kFrontLeft, q - qd * kStep);
+    const Vector3 shank = now.p_B_m[3] - now.p_B_m[2];
+    const Vector3 rate = ((next.p_B_m[3] - next.p_B_m[2]) - (last.p_B_m[3] - last.p_B_m[2])) /
+                         (2 * kStep);
+    EXPECT_LT((shank_angular_velocity_B(q, qd).cross(shank) - rate).norm(), 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace surefoot::robot
