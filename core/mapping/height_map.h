@@ -102,6 +102,29 @@ class HeightMap {
     }
   }
 
+  // Quick access for loops around one cell of the map: |dx|, |dy| < kSide / 2, nullptr outside.
+  class Around {
+   public:
+    constexpr Around(HeightMap& map, CellIndex anchor)
+        : map_(map),
+          anchor_(anchor),
+          column_(static_cast<std::int32_t>(wrap(anchor.ix))),
+          row_(static_cast<std::int32_t>(wrap(anchor.iy))) {}
+    constexpr MapCell* find(std::int32_t dx, std::int32_t dy) const {
+      if (!map_.contains({anchor_.ix + dx, anchor_.iy + dy})) return nullptr;
+      return &map_.cells_[fold(row_ + dy) * kSide + fold(column_ + dx)];
+    }
+
+   private:
+    static constexpr std::size_t fold(std::int32_t i) {
+      return static_cast<std::size_t>(i < 0 ? i + kSide : (i >= kSide ? i - kSide : i));
+    }
+    HeightMap& map_;
+    CellIndex anchor_;
+    std::int32_t column_;
+    std::int32_t row_;
+  };
+
   // Forgets everything; the map then covers kSide x kSide cells around `centre`.
   void reset(CellIndex centre) {
     for (MapCell& cell : cells_) cell = MapCell{};

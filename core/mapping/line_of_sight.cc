@@ -1,0 +1,178 @@
+#include "core/mapping/line_of_sight.h"
+
+#include <algorithm>
+
+#include "core/math/elementary.h"
+
+namespace surefoot::mapping {
+namespace {
+
+// Below this descent (about 6 degrees) the height margins are not stretched further along the ray.
+constexpr double kLeastDescent = 0.1;
+
+// The camera, ready to look at many cells.
+class CellView {
+ public:
+  explicit CellView(const Sight& sight)
+      : sight_(sight), R_OC_(sight.X_OC.rotation.matrix), origin_(sight.X_OC.origin.m) {}
+
+  enum class Verdict { kNone, kConsistent, kSeenThrough };
+
+  // offset_x, offset_y: the cell's centre from the camera, in O.
+  Verdict look(double offset_x, double offset_y, const MapCell& cell) const {
+    const double rise = static_cast<double>(cell.height_m) - origin_.z();
+    const double z =
+        R_OC_(0, 2) * offset_x + R_OC_(1, 2) * offset_y + R_OC_(2, 2) * rise;
+    if (z < sight_.sensor.min_range_m) return Verdict::kNone;
+    const double x = R_OC_(0, 0) * offset_x + R_OC_(1, 0) * offset_y + R_OC_(2, 0) * rise;
+    const double y = R_OC_(0, 1) * offset_x + R_OC_(1, 1) * offset_y + R_OC_(2, 1) * rise;
+    const DepthImage& image = sight_.image;
+    const double u = image.fx * x / z + image.cx + 0.5;
+    const double v = image.fy * y / z + image.cy + 0.5;
+    if (!(u >= 0 && v >= 0 && u < image.width && v < image.height)) return Verdict::kNone;
+    const auto seen = static_cast<double>(
+        image.nearest_m[image.at(static_cast<std::int32_t>(u), static_cast<std::int32_t>(v))]);
+    const double gap = seen - z;
+    const double least = sight_.config.clear_margin_m;
+    if (!(seen > 0) || gap < -least) return Verdict::kNone;  // no answer, or hidden
+    if (gap <= least) return Verdict::kConsistent;
+    return gap > margin(seen, offset_x, offset_y, rise, cell) ? Verdict::kSeenThrough
+                                                             : Verdict::kConsistent;
+  }
+
+ private:
+  // How far behind the cell the ray must end: noise of the depth, and what an error of the cell's
+  // height or of the attitude amounts to along a ray that descends at a grazing angle.
+  double margin(double seen, double offset_x, double offset_y, double rise,
+                const MapCell& cell) const {
+    const MappingConfig& config = sight_.config;
+    const double range2 = offset_x * offset_x + offset_y * offset_y;
+    const double depth_sigma = seen * seen * sight_.sensor.inverse_depth_sigma_per_m;
+    const double height_sigma = math::sqrt(static_cast<double>(cell.variance_m2) +
+                                           math::square(config.attitude_noise_rad) * range2);
+    const double range = math::sqrt(range2);
+    const double descent = std::max((rise < 0 ? -rise : rise) / std::max(range, 1e-3), kLeastDescent);
+    return config.clear_margin_m + config.clear_sigma * (depth_sigma + config.depth_noise_floor_m) +
+           (config.clear_height_margin_m + config.clear_sigma * height_sigma) / descent;
+  }
+
+  const Sight& sight_;
+  Matrix3 R_OC_;
+  Vector3 origin_;
+};
+
+// Called for a cell that was seen through.
+void doubt(const Sight& sight, MapCell& cell, IntegrationReport& report) {
+  ++cell.misses;
+  if (cell.misses < sight.config.clear_frames) {
+    ++report.cells_doubted;
+    return;
+  }
+  // What remains true: a line of sight passes where the top was.
+  const float ceiling = cell.height_m;
+  cell = MapCell{};
+  cell.height_m = ceiling;
+  cell.stamp_ms = sight.now_ms;
+  cell.state = CellState::kBounded;
+  ++report.cells_cleared;
+}
+
+// Marches one ray back from where it ended.
+class CeilingRay {
+ public:
+  CeilingRay(const Sight& sight, ControlMap& map)
+      : sight_(sight),
+        size_(sight.config.cell_size_m),
+        camera_(cell_index(sight.X_OC.origin.m.x(), sight.X_OC.origin.m.y(), size_)),
+        around_(map, camera_) {}
+
+  // direction: of one unit of depth, in O; depth: of the surface.
+  void lower(const Vector3& direction, double depth, IntegrationReport& report) const {
+    const double horizontal =
+        math::sqrt(direction.x() * direction.x() + direction.y() * direction.y());
+    if (horizontal < 1e-3) return;
+    const double step = sight_.config.ray_step_cells * size_ / horizontal;
+    // The end's own noise must not enter: start above it by the margin of the clearing.
+    const double sigma = depth * depth * sight_.sensor.inverse_depth_sigma_per_m;
+    const double end = depth - sight_.config.clear_sigma * sigma - size_;
+    // The sample is one height of the cell's stretch of the ray; its highest is at most this above.
+    const double slack = size_ * 0.7072 * (direction.z() < 0 ? -direction.z() : direction.z()) / horizontal;
+    const Vector3& origin = sight_.X_OC.origin.m;
+    // In cells, counted from the camera's cell and shifted so that truncation rounds down.
+    const double inverse = 1.0 / size_;
+    const double base_x = origin.x() * inverse - camera_.ix + kShift;
+    const double base_y = origin.y() * inverse - camera_.iy + kShift;
+    double t = end;
+    for (std::int32_t i = 0; i < kMaxCellsPerRay && t > 0; ++i, t -= step) {
+      const double x = base_x + t * direction.x() * inverse;
+      const double y = base_y + t * direction.y() * inverse;
+      if (!(x >= 0 && y >= 0 && x < 2 * kShift && y < 2 * kShift)) continue;
+      MapCell* cell = around_.find(static_cast<std::int32_t>(x) - kShift,
+                                   static_cast<std::int32_t>(y) - kShift);
+      if (cell == nullptr || cell->state > CellState::kBounded) continue;
+      const auto ceiling = static_cast<float>(origin.z() + t * direction.z() + slack);
+      if (cell->state == CellState::kBounded && cell->height_m <= ceiling) continue;
+      cell->height_m = ceiling;
+      cell->state = CellState::kBounded;
+      cell->stamp_ms = sight_.now_ms;
+      ++report.ceilings;
+    }
+  }
+
+ private:
+  static constexpr std::int32_t kShift = kMapSide / 2;
+
+  const Sight& sight_;
+  double size_;
+  CellIndex camera_;
+  ControlMap::Around around_;
+};
+
+}  // namespace
+
+void clear_seen_through(const Sight& sight, ControlMap& map, IntegrationReport& report) {
+  const CellView view(sight);
+  const double size = sight.config.cell_size_m;
+  const Vector3& origin = sight.X_OC.origin.m;
+  const CellIndex camera = cell_index(origin.x(), origin.y(), size);
+  const CellIndex first = map.first();
+  constexpr std::int32_t kRadius = kMaxClearRadius_cells;
+  const std::int32_t iy_begin = std::max(camera.iy - kRadius, first.iy);
+  const std::int32_t iy_end = std::min(camera.iy + kRadius + 1, first.iy + kMapSide);
+  const std::int32_t ix_begin = std::max(camera.ix - kRadius, first.ix);
+  const std::int32_t ix_end = std::min(camera.ix + kRadius + 1, first.ix + kMapSide);
+  for (std::int32_t iy = iy_begin; iy < iy_end; ++iy) {
+    const double offset_y = cell_centre(iy, size) - origin.y();
+    map.for_row(iy, ix_begin, ix_end, [&](std::int32_t ix, MapCell& cell) {
+      if (!cell.has_height() || cell.stamp_ms == sight.now_ms) return;
+      const double offset_x = cell_centre(ix, size) - origin.x();
+      switch (view.look(offset_x, offset_y, cell)) {
+        case CellView::Verdict::kNone: break;
+        case CellView::Verdict::kConsistent: cell.misses = 0; break;
+        case CellView::Verdict::kSeenThrough: doubt(sight, cell, report); break;
+      }
+    });
+  }
+}
+
+void lower_ceilings(const Sight& sight, std::uint64_t phase, ControlMap& map,
+                    IntegrationReport& report) {
+  const DepthImage& image = sight.image;
+  const std::int32_t stride = sight.config.ceiling_pixel_stride;
+  const auto cycle = static_cast<std::uint64_t>(stride);
+  const auto u_begin = static_cast<std::int32_t>(phase % cycle);
+  const auto v_begin = static_cast<std::int32_t>(phase / cycle % cycle);
+  const Matrix3& R_OC = sight.X_OC.rotation.matrix;
+  const CeilingRay ray(sight, map);
+  for (std::int32_t v = v_begin; v < image.height; v += stride) {
+    for (std::int32_t u = u_begin; u < image.width; u += stride) {
+      const auto depth = static_cast<double>(image.z_m[image.at(u, v)]);
+      if (!(depth > 0)) continue;
+      const Vector3 direction =
+          R_OC * Vector3((u - image.cx) / image.fx, (v - image.cy) / image.fy, 1.0);
+      ray.lower(direction, std::min(depth, sight.sensor.max_range_m), report);
+    }
+  }
+}
+
+}  // namespace surefoot::mapping
