@@ -56,13 +56,9 @@ bool setup_valid(const ExecutiveSetup& setup) {
   return slow_tasks == 0 || setup.runner != nullptr;
 }
 
-double to_us(TimeNs time) {
-  return static_cast<double>(time.ns) * 1e-3;
-}
+double to_us(TimeNs time) { return static_cast<double>(time.ns) * 1e-3; }
 
-std::uint32_t whole_us(TimeNs time) {
-  return static_cast<std::uint32_t>(time.ns / 1000);
-}
+std::uint32_t whole_us(TimeNs time) { return static_cast<std::uint32_t>(time.ns / 1000); }
 
 void fill_quantiles(const DurationHistogram& histogram, TaskReport& report) {
   report.count = histogram.count();

@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "core/autonomy/tick.h"
+#include "core/base/assert.h"
 #include "core/base/random.h"
 #include "core/base/time.h"
 #include "hal/api/clock.h"
@@ -55,10 +56,20 @@ class InlineRunner : public SlowTaskRunner {
   explicit InlineRunner(hal::Clock* stopwatch) : stopwatch_(stopwatch) {}
 
  private:
-  void do_start(std::size_t index, const SlowWork& work) final;
+  // Defined here and not in a source file: core is compiled without run-time type information, and a
+  // class whose table lives there could not be derived from in code that has it.
+  void do_start(std::size_t index, const SlowWork& work) final {
+    SUREFOOT_ASSERT(index < times_.size());
+    const TimeNs begin = stopwatch_ != nullptr ? stopwatch_->now() : TimeNs{};
+    work.run(work.self);
+    times_[index] = stopwatch_ != nullptr ? stopwatch_->now() - begin : TimeNs{};
+  }
   bool do_finished(std::size_t) override { return true; }
-  TimeNs do_execution_time(std::size_t index) const final;
-  TimeNs do_inline_time(std::size_t index) const final;
+  TimeNs do_execution_time(std::size_t index) const final {
+    SUREFOOT_ASSERT(index < times_.size());
+    return times_[index];
+  }
+  TimeNs do_inline_time(std::size_t index) const final { return do_execution_time(index); }
 
   hal::Clock* stopwatch_;
   std::array<TimeNs, autonomy::kMaxSlowTasks> times_{};
