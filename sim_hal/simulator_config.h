@@ -107,7 +107,7 @@ struct FaultConfig {
 // How the robot is set down. Not in configuration files: the default is what every mission starts
 // from, the rest serves tests and benches.
 struct StartPose {
-  std::array<double, robot::kJointsPerLeg> leg_rad{0.0, -1.4, 2.7};  // folded, feet flat
+  std::array<double, robot::kJointsPerLeg> leg_rad{0.0, -1.4, 2.7};  // folded
   double drop_height_m = 0.0005;  // clearance between the lowest point of the robot and the ground
   bool trunk_fixed = false;       // bolted to a stand
 };

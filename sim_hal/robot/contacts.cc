@@ -1,0 +1,198 @@
+#include "sim_hal/robot/contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surefoot::sim {
+
+namespace {
+
+// Above this speed a contact counts as slipping and friction follows the slip [m/s].
+constexpr double kSlipping_m_s = 0.005;
+// Friction across the slip while slipping, as part of the coefficient: keeps the direction from
+// jittering and adds 1 % to the total.
+constexpr double kAcross = 0.15;
+// How far the trunk may be from the ground and still be tested.
+constexpr double kMargin_m = 0.01;
+
+Vector3 vector(const dReal* v) { return {v[0], v[1], v[2]}; }
+
+void place_capsule(dGeomID geom, const Vector3& middle) {
+  dGeomSetOffsetPosition(geom, middle.x(), middle.y(), middle.z());
+}
+
+}  // namespace
+
+Contacts::Contacts(dWorldID world, const Articulation& robot, const Terrain& terrain,
+                   const TerrainIndex& index, const PhysicsConfig& config)
+    : world_(world),
+      index_(index),
+      config_(config),
+      friction_(terrain.friction),
+      grid_(terrain.grid) {
+  make_shapes(robot);
+  make_terrain(terrain);
+  group_ = dJointGroupCreate(0);
+  // ODE keeps a group's arenas when it is emptied: filling it once means no allocation later.
+  dContact contact{};
+  for (std::size_t i = 0; i < kMaxPerStep; ++i) dJointCreateContact(world_, group_, &contact);
+  dJointGroupEmpty(group_);
+}
+
+Contacts::~Contacts() {
+  dJointGroupDestroy(group_);
+  for (const dGeomID geom : geoms_) dGeomDestroy(geom);
+  for (const dGeomID geom : boxes_) dGeomDestroy(geom);
+  dGeomDestroy(plane_);
+  if (field_ != nullptr) dGeomDestroy(field_);
+  if (field_data_ != nullptr) dGeomHeightfieldDataDestroy(field_data_);
+}
+
+void Contacts::make_shapes(const Articulation& robot) {
+  const robot::RobotModel& model = robot.model();
+  geoms_[kTrunk] =
+      dCreateBox(nullptr, model.trunk_size_m[0], model.trunk_size_m[1], model.trunk_size_m[2]);
+  dGeomSetBody(geoms_[kTrunk], robot.body(0));
+  place_capsule(geoms_[kTrunk], -robot.centre_of_mass_m(0));
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    const std::size_t thigh = body_of(robot::joint_index(leg, 1));
+    const std::size_t shank = body_of(robot::joint_index(leg, 2));
+    const Vector3 foot_m(0, 0, -model.shank_length_m);
+    const double knee_y = robot::left_sign(leg) * model.knee_offset_m;
+    const dGeomID foot = dCreateSphere(nullptr, model.foot_radius_m);
+    dGeomSetBody(foot, robot.body(shank));
+    place_capsule(foot, foot_m - robot.centre_of_mass_m(shank));
+    const dGeomID lower = dCreateCapsule(nullptr, model.shank_radius_m, model.shank_length_m);
+    dGeomSetBody(lower, robot.body(shank));
+    place_capsule(lower, 0.5 * foot_m - robot.centre_of_mass_m(shank));
+    const dGeomID upper = dCreateCapsule(nullptr, model.thigh_radius_m, model.thigh_length_m);
+    dGeomSetBody(upper, robot.body(thigh));
+    place_capsule(upper, Vector3(0, knee_y, -0.5 * model.thigh_length_m) -
+                             robot.centre_of_mass_m(thigh));
+    geoms_[shape_of(leg, Shape::kFoot)] = foot;
+    geoms_[shape_of(leg, Shape::kShank)] = lower;
+    geoms_[shape_of(leg, Shape::kThigh)] = upper;
+  }
+}
+
+void Contacts::make_terrain(const Terrain& terrain) {
+  plane_ = dCreatePlane(nullptr, 0, 0, 1, 0);
+  for (const TerrainBox& box : terrain.boxes) {
+    const double height = box.top_m - box.bottom_m;
+    const dGeomID geom =
+        dCreateBox(nullptr, 2 * box.half_length_m, 2 * box.half_width_m, height);
+    dMatrix3 r{};
+    dRFromAxisAndAngle(r, 0, 0, 1, std::atan2(box.sin_yaw, box.cos_yaw));
+    dGeomSetRotation(geom, r);
+    dGeomSetPosition(geom, box.x_m, box.y_m, box.bottom_m + height / 2);
+    boxes_.push_back(geom);
+  }
+  const HeightGrid& grid = terrain.grid;
+  if (grid.empty()) return;
+  // ODE's field: local y up, samples along local x and z, origin in the middle. Turned +90 degrees
+  // about x, local z points to W's -y: rows are stored from the greatest y downwards.
+  std::vector<double> rows;
+  rows.reserve(grid.z_m.size());
+  for (std::size_t j = grid.ny; j-- > 0;) {
+    for (std::size_t i = 0; i < grid.nx; ++i) rows.push_back(grid.at(i, j));
+  }
+  const double width = grid.end_x_m() - grid.x0_m;
+  const double depth = grid.end_y_m() - grid.y0_m;
+  field_data_ = dGeomHeightfieldDataCreate();
+  dGeomHeightfieldDataBuildDouble(field_data_, rows.data(), 1, width, depth,
+                                  static_cast<int>(grid.nx), static_cast<int>(grid.ny), 1.0, 0.0,
+                                  1.0, 0);
+  const auto [low, high] = std::minmax_element(rows.begin(), rows.end());
+  dGeomHeightfieldDataSetBounds(field_data_, *low - 1.0, *high + 0.1);
+  field_ = dCreateHeightfield(nullptr, field_data_, 1);
+  dMatrix3 r{};
+  dRFromAxisAndAngle(r, 1, 0, 0, std::acos(-1.0) / 2);
+  dGeomSetRotation(field_, r);
+  dGeomSetPosition(field_, grid.x0_m + width / 2, grid.y0_m + depth / 2, 0);
+}
+
+void Contacts::collide() {
+  count_ = 0;
+  for (std::size_t i = 0; i < kShapes; ++i) collide_shape(i);
+}
+
+void Contacts::collide_shape(std::size_t shape) {
+  dReal bounds[6];
+  dGeomGetAABB(geoms_[shape], bounds);
+  const double x0 = bounds[0] - kMargin_m;
+  const double x1 = bounds[1] + kMargin_m;
+  const double y0 = bounds[2] - kMargin_m;
+  const double y1 = bounds[3] + kMargin_m;
+  const double x = 0.5 * (x0 + x1);
+  const double y = 0.5 * (y0 + y1);
+  if (bounds[4] > index_.max_height_m(x0, y0, x1, y1)) return;
+  if (grid_.contains(x, y)) {
+    collide_pair(shape, field_);
+  } else if (bounds[4] <= 0) {
+    collide_pair(shape, plane_);
+  }
+  if (boxes_.empty()) return;
+  std::array<std::uint32_t, TerrainIndex::kMaxCandidates> near;
+  const std::size_t count = index_.boxes_near(x0, y0, x1, y1, near);
+  for (std::size_t k = 0; k < count; ++k) collide_pair(shape, boxes_[near[k]]);
+}
+
+void Contacts::collide_pair(std::size_t shape, dGeomID ground) {
+  std::array<dContactGeom, kMaxPerPair> found;
+  const int count = dCollide(geoms_[shape], ground, kMaxPerPair, found.data(), sizeof(dContactGeom));
+  for (int i = 0; i < count; ++i) add(shape, found[static_cast<std::size_t>(i)]);
+}
+
+// The normal of an ODE contact points into the first geom, here always the robot's.
+void Contacts::add(std::size_t shape, const dContactGeom& geometry) {
+  if (count_ == kMaxPerStep) {
+    ++dropped_;
+    return;
+  }
+  const dBodyID body = dGeomGetBody(geoms_[shape]);
+  dVector3 velocity_W;
+  dBodyGetPointVel(body, geometry.pos[0], geometry.pos[1], geometry.pos[2], velocity_W);
+  const Vector3 normal = vector(geometry.normal);
+  const Vector3 velocity = vector(velocity_W);
+  const Vector3 slip = velocity - normal * normal.dot(velocity);
+  const bool slipping = slip.norm() > kSlipping_m_s;
+  const Vector3& last = shapes_[shape].force_N;
+  Vector3 along = slipping ? slip : Vector3(last - normal * normal.dot(last));
+  if (along.norm() < 1e-9) {
+    along = std::fabs(normal.x()) < 0.7 ? Vector3(Vector3(1, 0, 0) - normal * normal.x())
+                                        : Vector3(Vector3(0, 1, 0) - normal * normal.y());
+  }
+  along.normalize();
+  dContact contact{};
+  contact.geom = geometry;
+  contact.surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactFDir1 | dContactMu2;
+  contact.surface.mu = friction_;
+  contact.surface.mu2 = slipping ? kAcross * friction_ : friction_;
+  contact.surface.soft_erp = config_.contact_erp;
+  contact.surface.soft_cfm = config_.contact_cfm;
+  for (int k = 0; k < 3; ++k) contact.fdir1[k] = along[k];
+  const dJointID joint = dJointCreateContact(world_, group_, &contact);
+  dJointSetFeedback(joint, &feedback_[count_]);
+  dJointAttach(joint, body, nullptr);
+  records_[count_] = {shape, normal, slip};
+  ++count_;
+}
+
+void Contacts::collect() {
+  std::array<double, kShapes> largest{};
+  shapes_.fill({});
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Vector3 force = vector(feedback_[i].f1);
+    const double pressure = records_[i].normal.dot(force);
+    ShapeContact& shape = shapes_[records_[i].shape];
+    shape.force_N += force;
+    shape.touching = shape.touching || pressure > 0;
+    if (pressure > largest[records_[i].shape]) {
+      largest[records_[i].shape] = pressure;
+      shape.slip_velocity_m_s = records_[i].slip;
+    }
+  }
+  dJointGroupEmpty(group_);
+}
+
+}  // namespace surefoot::sim

@@ -1,0 +1,87 @@
+// Contact between the robot's collision shapes and the ground: foot spheres, shank and thigh capsules,
+// trunk box, against plane, boxes and height field. The robot does not collide with itself.
+//
+// Friction is Coulomb's cone as far as ODE's pyramid can: one side of the pyramid follows the slip, or,
+// while a contact sticks, its last tangential force. README.md "Friction" has the measured figures.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/math/linear.h"
+#include "sim_hal/robot/articulation.h"
+#include "sim_hal/simulator_config.h"
+#include "sim_hal/world/terrain_index.h"
+
+namespace surefoot::sim {
+
+// What one shape felt in the last step, axes of W.
+struct ShapeContact {
+  Vector3 force_N = Vector3::Zero();
+  Vector3 slip_velocity_m_s = Vector3::Zero();  // of the surface point with the largest force
+  bool touching = false;
+};
+
+enum class Shape : std::uint8_t { kFoot = 0, kShank, kThigh };
+
+class Contacts {
+ public:
+  static constexpr std::size_t kShapes = 1 + 3 * robot::kLegs;  // trunk first
+  static constexpr int kMaxPerPair = 4;
+  static constexpr std::size_t kMaxPerStep = 128;
+
+  static constexpr std::size_t kTrunk = 0;
+  static constexpr std::size_t shape_of(std::size_t leg, Shape shape) {
+    return 1 + 3 * leg + static_cast<std::size_t>(shape);
+  }
+
+  Contacts(dWorldID world, const Articulation& robot, const Terrain& terrain,
+           const TerrainIndex& index, const PhysicsConfig& config);
+  ~Contacts();
+  Contacts(const Contacts&) = delete;
+  Contacts& operator=(const Contacts&) = delete;
+
+  // Before the step: finds contacts and makes their joints.
+  void collide();
+  // After the step: sums forces per shape and discards the joints.
+  void collect();
+
+  const ShapeContact& shape(std::size_t i) const { return shapes_[i]; }
+  std::uint64_t dropped() const { return dropped_; }
+
+ private:
+  struct Record {  // one contact joint of the present step
+    std::size_t shape = 0;
+    Vector3 normal = Vector3::Zero();
+    Vector3 slip = Vector3::Zero();
+  };
+
+  void make_shapes(const Articulation& robot);
+  void make_terrain(const Terrain& terrain);
+  void collide_shape(std::size_t shape);
+  void collide_pair(std::size_t shape, dGeomID ground);
+  void add(std::size_t shape, const dContactGeom& geometry);
+
+  dWorldID world_;
+  const TerrainIndex& index_;
+  PhysicsConfig config_;
+  double friction_;
+  std::array<dGeomID, kShapes> geoms_{};
+  dGeomID plane_ = nullptr;
+  dGeomID field_ = nullptr;
+  dHeightfieldDataID field_data_ = nullptr;
+  const HeightGrid& grid_;
+  std::vector<dGeomID> boxes_;
+  dJointGroupID group_ = nullptr;
+  std::array<Record, kMaxPerStep> records_;
+  std::array<dJointFeedback, kMaxPerStep> feedback_{};
+  std::size_t count_ = 0;
+  std::array<ShapeContact, kShapes> shapes_;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace surefoot::sim

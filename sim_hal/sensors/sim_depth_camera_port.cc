@@ -1,0 +1,253 @@
+#include "sim_hal/sensors/sim_depth_camera_port.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_hal/robot/articulation.h"
+
+namespace surefoot::sim {
+
+namespace {
+
+constexpr std::uint64_t kDepthStream = 3;
+constexpr double kUnit_m = 0.001;
+constexpr std::size_t kPatch_px = 4;
+// Second difference of the disparity image, zero on planes, that marks a discontinuity: stereo
+// matching windows straddle it. In pixels of the native image.
+constexpr double kEdge_px = 1.5;
+
+// Both z-depth rays and the capsule live in C: hits at z = t because direction.z = 1.
+double cast_sphere(const Vector3& centre, double radius, const Vector3& direction) {
+  const double a = direction.squaredNorm();
+  const double b = direction.dot(centre);
+  const double c = centre.squaredNorm() - radius * radius;
+  const double discriminant = b * b - a * c;
+  if (discriminant < 0) return kNoHit;
+  const double t = (b - std::sqrt(discriminant)) / a;
+  return t > 0 ? t : kNoHit;
+}
+
+double cast_cylinder(const Capsule& capsule, const Vector3& direction) {
+  const Vector3 axis = capsule.b_m - capsule.a_m;
+  const double axis2 = axis.squaredNorm();
+  if (axis2 == 0) return kNoHit;
+  const double direction_axis = direction.dot(axis);
+  const double a_axis = capsule.a_m.dot(axis);
+  // |t d - a|^2 off the axis, times axis2.
+  const double qa = axis2 * direction.squaredNorm() - direction_axis * direction_axis;
+  const double qb = axis2 * direction.dot(capsule.a_m) - direction_axis * a_axis;
+  const double qc = axis2 * (capsule.a_m.squaredNorm() - capsule.radius_m * capsule.radius_m) -
+                    a_axis * a_axis;
+  const double discriminant = qb * qb - qa * qc;
+  if (discriminant < 0 || qa <= 0) return kNoHit;
+  const double t = (qb - std::sqrt(discriminant)) / qa;
+  const double along = t * direction_axis - a_axis;
+  return t > 0 && along >= 0 && along <= axis2 ? t : kNoHit;
+}
+
+// Extent of x / z over a ball around (x, z).
+void ratio_bounds(double x, double z, double r, double& low, double& high) {
+  for (const double depth : {z - r, z + r}) {
+    low = std::min(low, (x - r) / depth);
+    high = std::max(high, (x + r) / depth);
+  }
+}
+
+}  // namespace
+
+double cast_capsule(const Capsule& capsule, const Vector3& direction) {
+  const double side = cast_cylinder(capsule, direction);
+  const double a = cast_sphere(capsule.a_m, capsule.radius_m, direction);
+  const double b = cast_sphere(capsule.b_m, capsule.radius_m, direction);
+  return std::min(side, std::min(a, b));
+}
+
+SimDepthCameraPort::SimDepthCameraPort(const robot::DepthCameraSpecification& specification,
+                                       const DepthNoiseConfig& noise, const FaultConfig& faults,
+                                       const TerrainIndex& terrain, std::uint64_t seed)
+    : specification_(specification),
+      noise_(noise),
+      faults_(faults),
+      terrain_(terrain),
+      mount_B_m_(specification.mount.position_B_m[0], specification.mount.position_B_m[1],
+                 specification.mount.position_B_m[2]),
+      random_(seed, kDepthStream),
+      latency_{static_cast<std::int64_t>(std::llround(noise.latency_s * 1e9))},
+      frames_(std::make_unique<std::array<hal::DepthFrame, kQueue>>()) {
+  const double width = specification.width_px;
+  const double height = specification.height_px;
+  const double half_view = std::tan(specification.horizontal_view_rad / 2);
+  intrinsics_.width_px = specification.width_px;
+  intrinsics_.height_px = specification.height_px;
+  intrinsics_.fx_px = width / 2 / half_view;
+  intrinsics_.fy_px = height / 2 / std::tan(specification.vertical_view_rad / 2);
+  intrinsics_.cx_px = (width - 1) / 2;
+  intrinsics_.cy_px = (height - 1) / 2;
+  disparity_m_px_ = specification.native_width_px / 2 / half_view * specification.baseline_m;
+  Matrix3 rotation_XC;  // optical axes in the housing: right = -y, down = -z, forward = x
+  rotation_XC << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  rotation_BC_ = mount_rotation(specification.mount) * rotation_XC;
+  const std::size_t pixels = static_cast<std::size_t>(specification.width_px) * specification.height_px;
+  exact_.assign(pixels, kNoHit);
+  patches_wide_ = (specification.width_px + kPatch_px - 1) / kPatch_px;
+  patches_.assign(patches_wide_ * ((specification.height_px + kPatch_px - 1) / kPatch_px), 0.0);
+}
+
+bool SimDepthCameraPort::due(TimeNs now) const {
+  return now.seconds() * specification_.rate_Hz >= static_cast<double>(next_) - 1e-6;
+}
+
+// Conservative: the pixels of the box around both end spheres.
+SimDepthCameraPort::Window SimDepthCameraPort::window_of(const Capsule& capsule) const {
+  Window window;
+  window.capsule = capsule;
+  const double r = capsule.radius_m;
+  const double nearest = std::min(capsule.a_m.z(), capsule.b_m.z()) - r;
+  if (std::max(capsule.a_m.z(), capsule.b_m.z()) + r < 0.01) return window;  // behind
+  window.u1 = intrinsics_.width_px - 1;
+  window.v1 = intrinsics_.height_px - 1;
+  if (nearest < 0.01) return window;  // reaches the camera's plane: the whole image
+  double u_low = kNoHit;
+  double u_high = -kNoHit;
+  double v_low = kNoHit;
+  double v_high = -kNoHit;
+  for (const Vector3& p : {capsule.a_m, capsule.b_m}) {
+    ratio_bounds(p.x(), p.z(), r, u_low, u_high);
+    ratio_bounds(p.y(), p.z(), r, v_low, v_high);
+  }
+  const auto pixel = [](double ratio, double f, double c) {
+    return std::clamp(ratio * f + c, -1e6, 1e6);
+  };
+  const double fx = intrinsics_.fx_px;
+  const double fy = intrinsics_.fy_px;
+  window.u0 = std::max(window.u0, static_cast<int>(std::floor(pixel(u_low, fx, intrinsics_.cx_px))));
+  window.u1 = std::min(window.u1, static_cast<int>(std::ceil(pixel(u_high, fx, intrinsics_.cx_px))));
+  window.v0 = std::max(window.v0, static_cast<int>(std::floor(pixel(v_low, fy, intrinsics_.cy_px))));
+  window.v1 = std::min(window.v1, static_cast<int>(std::ceil(pixel(v_high, fy, intrinsics_.cy_px))));
+  return window;
+}
+
+void SimDepthCameraPort::render_row(int v, const Vector3& p_WC_m, const Matrix3& rotation_WC) {
+  const int width = intrinsics_.width_px;
+  double* row = exact_.data() + static_cast<std::ptrdiff_t>(v) * width;
+  const double y = (v - intrinsics_.cy_px) / intrinsics_.fy_px;
+  const double limit = specification_.max_range_m;
+  for (int u = 0; u < width; ++u) {
+    const Vector3 direction_C((u - intrinsics_.cx_px) / intrinsics_.fx_px, y, 1.0);
+    row[u] = terrain_.cast(p_WC_m, rotation_WC * direction_C, limit);
+  }
+  for (std::size_t k = 0; k < window_count_; ++k) {
+    const Window& window = windows_[k];
+    if (v < window.v0 || v > window.v1) continue;
+    for (int u = window.u0; u <= window.u1; ++u) {
+      const Vector3 direction_C((u - intrinsics_.cx_px) / intrinsics_.fx_px, y, 1.0);
+      const double hit = cast_capsule(window.capsule, direction_C);
+      if (hit < row[u]) row[u] = hit;
+    }
+  }
+}
+
+void SimDepthCameraPort::render(const Vector3& p_WC_m, const Matrix3& rotation_WC) {
+  for (int v = 0; v < intrinsics_.height_px; ++v) render_row(v, p_WC_m, rotation_WC);
+  depth_counters_.rays += exact_.size();
+}
+
+void SimDepthCameraPort::draw_patches() {
+  for (double& patch : patches_) patch = random_.normal();
+}
+
+// Second difference of the native disparity along rows and columns, the larger one.
+double SimDepthCameraPort::curvature_px(std::size_t u, std::size_t v) const {
+  const std::size_t width = intrinsics_.width_px;
+  const std::size_t height = intrinsics_.height_px;
+  const std::size_t i = v * width + u;
+  const double here = 2.0 / exact_[i];
+  double along = 0;
+  double down = 0;
+  if (u > 0 && u + 1 < width) along = 1.0 / exact_[i - 1] + 1.0 / exact_[i + 1] - here;
+  if (v > 0 && v + 1 < height) down = 1.0 / exact_[i - width] + 1.0 / exact_[i + width] - here;
+  return disparity_m_px_ * std::max(std::fabs(along), std::fabs(down));
+}
+
+std::uint16_t SimDepthCameraPort::measure(std::size_t u, std::size_t v) {
+  const double z = exact_[v * intrinsics_.width_px + u];
+  if (!(z >= specification_.min_range_m && z <= specification_.max_range_m)) {
+    ++depth_counters_.out_of_range;
+    return 0;
+  }
+  const bool edge = curvature_px(u, v) > kEdge_px;
+  const double chance = random_.uniform();
+  if (chance < (edge ? noise_.edge_dropout : noise_.random_dropout)) {
+    ++(edge ? depth_counters_.edge_dropouts : depth_counters_.random_dropouts);
+    return 0;
+  }
+  const double patch = patches_[v / kPatch_px * patches_wide_ + u / kPatch_px];
+  const double own = random_.normal();
+  const double common = noise_.correlated_part;
+  const double error_px = specification_.disparity_noise_px *
+                          (std::sqrt(common) * patch + std::sqrt(1.0 - common) * own);
+  const double measured = z + z * z / disparity_m_px_ * error_px;
+  if (measured < specification_.min_range_m || measured > specification_.max_range_m) {
+    ++depth_counters_.out_of_range;
+    return 0;
+  }
+  return static_cast<std::uint16_t>(std::min(65535.0, std::floor(measured / kUnit_m + 0.5)));
+}
+
+void SimDepthCameraPort::expose(TimeNs now, const Vector3& p_WB_m, const Matrix3& rotation_WB,
+                                std::span<const Capsule> robot_shapes_W) {
+  next_ = static_cast<std::uint64_t>(
+              std::floor(now.seconds() * specification_.rate_Hz + 1e-6)) + 1;
+  const std::uint32_t sequence = sequence_++;
+  const double t = now.seconds();
+  if (t >= faults_.camera_off_from_s && t < faults_.camera_off_until_s) {
+    ++depth_counters_.exposures_lost;
+    return;
+  }
+  const Matrix3 rotation_WC = rotation_WB * rotation_BC_;
+  const Vector3 p_WC_m = p_WB_m + rotation_WB * mount_B_m_;
+  window_count_ = std::min(robot_shapes_W.size(), kMaxCapsules);
+  for (std::size_t k = 0; k < window_count_; ++k) {
+    const Capsule& shape = robot_shapes_W[k];
+    windows_[k] = window_of({rotation_WC.transpose() * (shape.a_m - p_WC_m),
+                             rotation_WC.transpose() * (shape.b_m - p_WC_m), shape.radius_m});
+  }
+  render(p_WC_m, rotation_WC);
+  draw_patches();
+  if (waiting_ == kQueue) {
+    first_ = (first_ + 1) % kQueue;
+    --waiting_;
+    ++counters_.dropped;
+  }
+  hal::DepthFrame& frame = (*frames_)[(first_ + waiting_) % kQueue];
+  ++waiting_;
+  frame.stamp = now;
+  frame.sequence = sequence;
+  frame.intrinsics = intrinsics_;
+  frame.depth_unit_m = static_cast<float>(kUnit_m);
+  for (std::size_t v = 0; v < intrinsics_.height_px; ++v) {
+    for (std::size_t u = 0; u < intrinsics_.width_px; ++u) {
+      frame.depth[v * intrinsics_.width_px + u] = measure(u, v);
+    }
+  }
+}
+
+// Copies the pixels in use; the rest of `out` keeps what it held.
+Status SimDepthCameraPort::do_receive(hal::DepthFrame& out) {
+  if (waiting_ == 0) return Status::kUnavailable;
+  const hal::DepthFrame& frame = (*frames_)[first_];
+  if (frame.stamp + latency_ > now_) return Status::kUnavailable;
+  out.stamp = frame.stamp;
+  out.sequence = frame.sequence;
+  out.intrinsics = frame.intrinsics;
+  out.depth_unit_m = frame.depth_unit_m;
+  std::copy_n(frame.depth.begin(), frame.pixel_count(), out.depth.begin());
+  if (counters_.delivered > 0) counters_.gaps += frame.sequence - expected_;
+  expected_ = frame.sequence + 1;
+  first_ = (first_ + 1) % kQueue;
+  --waiting_;
+  ++counters_.delivered;
+  return Status::kOk;
+}
+
+}  // namespace surefoot::sim

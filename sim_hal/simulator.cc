@@ -1,0 +1,318 @@
+#include "sim_hal/simulator.h"
+
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "sim_hal/robot/articulation.h"
+#include "sim_hal/robot/contacts.h"
+#include "sim_hal/robot/ode_runtime.h"
+#include "sim_hal/robot/sim_can_port.h"
+#include "sim_hal/sensors/sim_depth_camera_port.h"
+#include "sim_hal/sensors/sim_imu_port.h"
+#include "sim_hal/world/terrain.h"
+#include "sim_hal/world/terrain_index.h"
+
+namespace surefoot::sim {
+
+namespace {
+
+constexpr double kGravity_m_s2 = 9.81;
+constexpr double kSlipThreshold_m_s = 0.005;  // below: creep of the contact solver
+
+std::array<double, 3> array(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+std::array<double, 4> quaternion(dBodyID body) {
+  const dReal* q = dBodyGetQuaternion(body);
+  return {q[0], q[1], q[2], q[3]};
+}
+
+// The ODE world; owns bodies and joints.
+class OdeWorld {
+ public:
+  OdeWorld() {
+    start_ode();
+    id_ = dWorldCreate();
+    dWorldSetGravity(id_, 0, 0, -kGravity_m_s2);
+    dWorldSetAutoDisableFlag(id_, 0);
+    dWorldSetERP(id_, 0.2);
+    dWorldSetCFM(id_, 1e-10);
+    dWorldSetMaxAngularSpeed(id_, dInfinity);
+    dWorldStepReserveInfo reserve{};
+    reserve.struct_size = sizeof reserve;
+    reserve.reserve_factor = 1.5F;
+    reserve.reserve_minimum = 8U << 20U;  // enough for every contact at once: no growth later
+    dWorldSetStepMemoryReservationPolicy(id_, &reserve);
+  }
+  ~OdeWorld() { dWorldDestroy(id_); }
+  OdeWorld(const OdeWorld&) = delete;
+  OdeWorld& operator=(const OdeWorld&) = delete;
+  dWorldID id() const { return id_; }
+
+ private:
+  dWorldID id_;
+};
+
+void check(const SimulatorConfig& config, const robot::RobotModel& robot) {
+  const double step_s = config.physics.step_s;
+  if (!(step_s >= 0.0001 && step_s <= 0.002)) {
+    throw SimulatorError("simulator: physics.step_s must lie in 0.0001 to 0.002");
+  }
+  if (config.can.reply_size < 6 || config.can.reply_size > 8) {
+    throw SimulatorError("simulator: can.reply_size must be 6, 7 or 8");
+  }
+  if (robot.depth_camera.width_px > hal::kMaxDepthWidth_px ||
+      robot.depth_camera.height_px > hal::kMaxDepthHeight_px) {
+    throw SimulatorError("simulator: depth image larger than the port's frames");
+  }
+  if (config.depth.latency_s * robot.depth_camera.rate_Hz > SimDepthCameraPort::kQueue - 1) {
+    throw SimulatorError("simulator: depth.latency_s is longer than the frame queue");
+  }
+  for (std::size_t i = 0; i < robot::kJoints; ++i) {
+    if (robot.wiring[i].bus >= hal::kMaxCanBuses) throw SimulatorError("robot: wiring.bus above 3");
+    for (std::size_t k = 0; k < i; ++k) {
+      if (robot.wiring[i].bus == robot.wiring[k].bus &&
+          robot.wiring[i].can_id == robot.wiring[k].can_id) {
+        throw SimulatorError("robot: joints " + std::to_string(k) + " and " + std::to_string(i) +
+                             " share a bus and can_id");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+struct Simulator::Implementation final : hal::Clock {
+  Implementation(const robot::RobotModel& robot_model, const WorldSpec& world,
+                 const SimulatorConfig& configuration, std::uint64_t seed)
+      : config(configuration),
+        step{std::llround(configuration.physics.step_s * 1e9)},
+        terrain(make_terrain(world, seed)),
+        index(terrain),
+        robot(ode.id(), robot_model, configuration.start, step.seconds()),
+        contacts(ode.id(), robot, terrain, index, configuration.physics),
+        can(robot_model, configuration.can, configuration.faults, seed),
+        imu(robot_model.imu, configuration.imu, configuration.faults, seed),
+        camera(robot_model.depth_camera, configuration.depth, configuration.faults, index, seed) {
+    dWorldSetContactMaxCorrectingVel(ode.id(), configuration.physics.max_correcting_velocity_m_s);
+    mount_velocity_W = robot.trunk_point_velocity_W(imu.mount_B_m());
+    exchange_can();
+  }
+
+  TimeNs do_now() const override { return now; }
+  Status do_wait_until(TimeNs deadline) override;
+
+  void advance();
+  void exchange_can();
+  void advance_imu();
+  void expose();
+  void track_slip();
+
+  SimulatorConfig config;
+  TimeNs step;
+  TimeNs now;
+  OdeWorld ode;
+  Terrain terrain;
+  TerrainIndex index;
+  Articulation robot;
+  Contacts contacts;
+  SimCanPort can;
+  SimImuPort imu;
+  SimDepthCameraPort camera;
+  Vector3 mount_velocity_W;
+  Vector3 trunk_force_N = Vector3::Zero();
+  std::array<double, robot::kJoints> torques_Nm{};
+  std::array<double, robot::kLegs> slip_m{};
+  std::uint64_t steps = 0;
+};
+
+Status Simulator::Implementation::do_wait_until(TimeNs deadline) {
+  if (now > deadline) return Status::kTimeout;
+  while (now < deadline) advance();
+  return Status::kOk;
+}
+
+void Simulator::Implementation::exchange_can() {
+  std::array<double, robot::kJoints> positions;
+  std::array<double, robot::kJoints> velocities;
+  for (std::size_t i = 0; i < robot::kJoints; ++i) {
+    positions[i] = robot.joint_position_rad(i);
+    velocities[i] = robot.joint_velocity_rad_s(i);
+  }
+  can.advance(now, positions, velocities);
+}
+
+void Simulator::Implementation::advance_imu() {
+  const Vector3 velocity = robot.trunk_point_velocity_W(imu.mount_B_m());
+  const Vector3 acceleration = (velocity - mount_velocity_W) / step.seconds();
+  mount_velocity_W = velocity;
+  const Matrix3 to_B = robot.trunk_rotation().transpose();
+  imu.advance(now, step.seconds(), to_B * (acceleration + Vector3(0, 0, kGravity_m_s2)),
+              to_B * robot.trunk_angular_velocity_W());
+}
+
+void Simulator::Implementation::expose() {
+  const robot::RobotModel& model = robot.model();
+  std::array<Capsule, SimDepthCameraPort::kMaxCapsules> shapes;
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    const std::size_t thigh = body_of(robot::joint_index(leg, 1));
+    const std::size_t shank = body_of(robot::joint_index(leg, 2));
+    const double knee_y = robot::left_sign(leg) * model.knee_offset_m;
+    const Vector3 hip = robot.point_W_m(thigh, Vector3(0, knee_y, 0));
+    const Vector3 knee = robot.point_W_m(shank, Vector3::Zero());
+    const Vector3 foot = robot.point_W_m(shank, Vector3(0, 0, -model.shank_length_m));
+    shapes[3 * leg] = {hip, knee, model.thigh_radius_m};
+    shapes[3 * leg + 1] = {knee, foot, model.shank_radius_m};
+    shapes[3 * leg + 2] = {foot, foot, model.foot_radius_m};
+  }
+  camera.expose(now, robot.trunk_position_m(), robot.trunk_rotation(), shapes);
+}
+
+void Simulator::Implementation::track_slip() {
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    const ShapeContact& foot = contacts.shape(Contacts::shape_of(leg, Shape::kFoot));
+    const double speed = foot.slip_velocity_m_s.norm();
+    if (foot.touching && speed > kSlipThreshold_m_s) slip_m[leg] += speed * step.seconds();
+  }
+}
+
+// One physics step: torques from the drives at `now`, then everything that happens by now + step.
+void Simulator::Implementation::advance() {
+  torques_Nm = can.torques_Nm(now);
+  robot.apply(torques_Nm);
+  if (trunk_force_N.squaredNorm() > 0) {
+    const Vector3 p = robot.trunk_position_m();
+    dBodyAddForceAtPos(robot.body(0), trunk_force_N.x(), trunk_force_N.y(), trunk_force_N.z(), p.x(),
+                       p.y(), p.z());
+  }
+  contacts.collide();
+  dWorldStep(ode.id(), step.seconds());
+  contacts.collect();
+  robot.update();
+  ++steps;
+  now = now + step;
+  track_slip();
+  exchange_can();
+  advance_imu();
+  camera.advance(now);
+  if (camera.due(now)) expose();
+}
+
+Simulator::Simulator(const robot::RobotModel& robot, const WorldSpec& world,
+                     const SimulatorConfig& config, std::uint64_t seed) {
+  check(config, robot);
+  implementation_ = std::make_unique<Implementation>(robot, world, config, seed);
+}
+
+Simulator::~Simulator() = default;
+
+hal::Board Simulator::board() {
+  hal::Board board;
+  board.clock = implementation_.get();
+  board.can = &implementation_->can;
+  board.imu = &implementation_->imu;
+  board.depth_camera = &implementation_->camera;
+  return board;
+}
+
+Truth Simulator::truth() const {
+  const Implementation& sim = *implementation_;
+  const Articulation& robot = sim.robot;
+  Truth truth;
+  truth.stamp = sim.now;
+  truth.p_WB_m = array(robot.trunk_position_m());
+  truth.q_WB_wxyz = quaternion(robot.body(0));
+  truth.v_WB_m_s = array(robot.trunk_point_velocity_W(Vector3::Zero()));
+  truth.angular_velocity_B_rad_s =
+      array(robot.trunk_rotation().transpose() * robot.trunk_angular_velocity_W());
+  for (std::size_t i = 0; i < robot::kJoints; ++i) {
+    truth.joints[i] = {robot.joint_position_rad(i), robot.joint_velocity_rad_s(i),
+                       sim.torques_Nm[i]};
+  }
+  const Vector3 foot_m(0, 0, -robot.model().shank_length_m);
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    const std::size_t shank = body_of(robot::joint_index(leg, 2));
+    const ShapeContact& contact = sim.contacts.shape(Contacts::shape_of(leg, Shape::kFoot));
+    FootTruth& foot = truth.feet[leg];
+    foot.p_WF_m = array(robot.point_W_m(shank, foot_m));
+    foot.v_WF_m_s = array(robot.point_velocity_W(shank, foot_m));
+    foot.force_W_N = array(contact.force_N);
+    foot.contact = contact.touching;
+    foot.slip_speed_m_s = contact.touching ? contact.slip_velocity_m_s.norm() : 0.0;
+    foot.slip_m = sim.slip_m[leg];
+    truth.leg_contact[leg] =
+        sim.contacts.shape(Contacts::shape_of(leg, Shape::kShank)).touching ||
+        sim.contacts.shape(Contacts::shape_of(leg, Shape::kThigh)).touching;
+  }
+  truth.trunk_contact = sim.contacts.shape(Contacts::kTrunk).touching;
+  truth.mechanical_energy_J = robot.mechanical_energy_J(kGravity_m_s2);
+  return truth;
+}
+
+std::uint64_t Simulator::state_hash() const {
+  Fnv64 digest;
+  implementation_->robot.hash(digest);
+  return digest.value();
+}
+
+double Simulator::terrain_height_m(double x_m, double y_m) const {
+  return implementation_->index.height_m(x_m, y_m);
+}
+
+TerrainFigures Simulator::terrain_figures() const {
+  constexpr double kCell_m = 0.01;
+  const auto nx = static_cast<std::size_t>(std::llround(kGoalX_m / kCell_m)) + 1;
+  const auto ny = static_cast<std::size_t>(std::llround(kLaneWidth_m / kCell_m)) + 1;
+  std::vector<double> z(nx * ny);
+  TerrainFigures figures;
+  double sum = 0;
+  double squares = 0;
+  for (std::size_t j = 0; j < ny; ++j) {
+    for (std::size_t i = 0; i < nx; ++i) {
+      const double x = kCell_m * static_cast<double>(i);
+      const double y = kCell_m * static_cast<double>(j) - kLaneWidth_m / 2;
+      const double height = terrain_height_m(x, y);
+      z[j * nx + i] = height;
+      sum += height;
+      squares += height * height;
+      figures.max_height_m = std::max(figures.max_height_m, height);
+      if (i > 0) figures.max_step_m = std::max(figures.max_step_m, std::fabs(height - z[j * nx + i - 1]));
+      if (j > 0) figures.max_step_m = std::max(figures.max_step_m, std::fabs(height - z[(j - 1) * nx + i]));
+    }
+  }
+  const auto count = static_cast<double>(nx * ny);
+  const double mean = sum / count;
+  figures.rms_m = std::sqrt(std::max(0.0, squares / count - mean * mean));
+  const Terrain& terrain = implementation_->terrain;
+  figures.boxes = static_cast<std::uint32_t>(terrain.boxes.size());
+  figures.cover = clutter_cover(terrain);
+  figures.bridged_cells = terrain.bridged_cells;
+  figures.tiles = terrain.tiles;
+  return figures;
+}
+
+SimulatorCounters Simulator::counters() const {
+  const Implementation& sim = *implementation_;
+  const DepthCounters& depth = sim.camera.depth_counters();
+  SimulatorCounters counters;
+  counters.steps = sim.steps;
+  counters.ode_messages = ode_messages();
+  counters.contacts_dropped = sim.contacts.dropped();
+  counters.replies_lost = sim.can.replies_lost();
+  counters.frames_unanswered = sim.can.frames_unanswered();
+  counters.depth_rays = depth.rays;
+  counters.depth_edge_dropouts = depth.edge_dropouts;
+  counters.depth_random_dropouts = depth.random_dropouts;
+  counters.depth_out_of_range = depth.out_of_range;
+  counters.camera_exposures_lost = depth.exposures_lost;
+  counters.imu_samples_lost = sim.imu.lost();
+  return counters;
+}
+
+void Simulator::set_trunk_force(const std::array<double, 3>& force_W_N) {
+  implementation_->trunk_force_N = Vector3(force_W_N[0], force_W_N[1], force_W_N[2]);
+}
+
+}  // namespace surefoot::sim

@@ -1,0 +1,78 @@
+// The ground of a run: the level plane z = 0, upright boxes standing on it, and at most one grid of
+// heights that replaces the plane inside its rectangle. World frame W (world_spec.h), metres.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/random.h"
+#include "core/math/linear.h"
+#include "sim_hal/world/world_spec.h"
+
+namespace surefoot::sim {
+
+struct TerrainBox {
+  double x_m = 0;  // centre
+  double y_m = 0;
+  double half_length_m = 0;  // along the box's own x
+  double half_width_m = 0;
+  double bottom_m = 0;
+  double top_m = 0;
+  double cos_yaw = 1;
+  double sin_yaw = 0;
+
+  bool covers(double x, double y) const {
+    const double dx = x - x_m;
+    const double dy = y - y_m;
+    const double along = cos_yaw * dx + sin_yaw * dy;
+    const double across = cos_yaw * dy - sin_yaw * dx;
+    return along <= half_length_m && along >= -half_length_m && across <= half_width_m &&
+           across >= -half_width_m;
+  }
+};
+
+// Heights at nodes (x0 + i cell, y0 + j cell), z[j * nx + i]. Between nodes two triangles per cell
+// split along the diagonal from (i, j) to (i + 1, j + 1), as ODE's height field does in W.
+struct HeightGrid {
+  std::size_t nx = 0;
+  std::size_t ny = 0;
+  double x0_m = 0;
+  double y0_m = 0;
+  double cell_m = 0;
+  std::vector<double> z_m;
+
+  bool empty() const { return z_m.empty(); }
+  double end_x_m() const { return x0_m + cell_m * static_cast<double>(nx - 1); }
+  double end_y_m() const { return y0_m + cell_m * static_cast<double>(ny - 1); }
+  bool contains(double x, double y) const {
+    return !empty() && x >= x0_m && x <= end_x_m() && y >= y0_m && y <= end_y_m();
+  }
+  double at(std::size_t i, std::size_t j) const { return z_m[j * nx + i]; }
+  // (x, y) inside the rectangle.
+  double height_m(double x, double y) const;
+};
+
+struct Terrain {
+  std::vector<TerrainBox> boxes;
+  HeightGrid grid;
+  double friction = 0.6;
+  std::uint32_t bridged_cells = 0;
+  std::uint32_t tiles = 1;
+
+  double height_m(double x, double y) const;
+};
+
+// Throws SimulatorError for an unreadable file or a clutter field that cannot be filled.
+Terrain make_terrain(const WorldSpec& spec, std::uint64_t seed);
+
+// The generators, one file each.
+void make_clutter(double height_m, double cover, Random& random, Terrain& terrain);
+void make_steps(double height_m, Random& random, Terrain& terrain);
+void make_ramps(double slope_rad, Random& random, Terrain& terrain);
+void make_height_map(const WorldSpec& spec, Terrain& terrain);
+
+// Part of the clutter field under boxes, on a 1 cm raster.
+double clutter_cover(const Terrain& terrain);
+
+}  // namespace surefoot::sim

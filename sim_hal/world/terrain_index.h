@@ -1,0 +1,61 @@
+// A coarse raster over the terrain: which boxes may lie in a cell, and how high the ground gets there.
+// Serves contact search, height queries and rays. Built once; queries neither allocate nor change it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/math/linear.h"
+#include "sim_hal/world/terrain.h"
+
+namespace surefoot::sim {
+
+inline constexpr double kNoHit = std::numeric_limits<double>::infinity();
+
+class TerrainIndex {
+ public:
+  static constexpr double kCell_m = 0.1;
+  static constexpr std::size_t kMaxCandidates = 64;
+
+  // The terrain must outlive the index.
+  explicit TerrainIndex(const Terrain& terrain);
+
+  double height_m(double x, double y) const;
+  // Upper bound of the ground inside the rectangle.
+  double max_height_m(double x0, double y0, double x1, double y1) const;
+  // Boxes that may touch the rectangle, each once, ascending. Returns their number, at most
+  // out.size(); more are cut off.
+  std::size_t boxes_near(double x0, double y0, double x1, double y1,
+                         std::span<std::uint32_t> out) const;
+  // Smallest t in (0, t_max] at which origin + t * direction is on the ground's surface; kNoHit when
+  // none. The direction need not have unit length. Starting below the ground gives an arbitrary hit.
+  double cast(const Vector3& origin, const Vector3& direction, double t_max) const;
+
+ private:
+  struct Cell {
+    std::uint32_t first = 0;  // into items_
+    std::uint32_t count = 0;
+    double max_m = 0;
+  };
+  struct Walk;  // a ray on its way through the raster
+
+  void add_boxes();
+  void add_grid();
+  bool rectangle(double x0, double y0, double x1, double y1, std::size_t (&range)[4]) const;
+  double cast_boxes(const Cell& cell, const Vector3& origin, const Vector3& direction) const;
+  double cast_grid(const Vector3& origin, const Vector3& direction, double t0, double t1) const;
+
+  const Terrain& terrain_;
+  double x0_m_ = 0;
+  double y0_m_ = 0;
+  double max_m_ = 0;
+  std::size_t nx_ = 0;
+  std::size_t ny_ = 0;
+  std::vector<Cell> cells_;
+  std::vector<std::uint32_t> items_;
+};
+
+}  // namespace surefoot::sim
