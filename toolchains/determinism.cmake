@@ -3,10 +3,12 @@
 #   -ffp-contract=off   no fused multiply-add where the source has two roundings
 #   -fsigned-char       plain char is unsigned on ARM otherwise
 #   EIGEN_DONT_VECTORIZE  NEON packets use fma, SSE packets do not
+#   EIGEN_INITIALIZE_MATRICES_BY_ZERO  a vector nobody set is zero, not what the stack held
 #   EIGEN_CACHEFRIENDLY_PRODUCT_THRESHOLD=64  products from size 8 would call malloc otherwise
 #   -fno-math-errno     sqrt is one instruction, not a call that may set errno
 add_compile_options(-ffp-contract=off -fsigned-char -fno-math-errno)
-add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_CACHEFRIENDLY_PRODUCT_THRESHOLD=64)
+add_compile_definitions(EIGEN_DONT_VECTORIZE EIGEN_CACHEFRIENDLY_PRODUCT_THRESHOLD=64
+                        EIGEN_INITIALIZE_MATRICES_BY_ZERO)
 
 add_compile_options(-Wall -Wextra -Wconversion -Wshadow -Werror)
 

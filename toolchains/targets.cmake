@@ -25,3 +25,15 @@ function(surefoot_core_library name)
     set_property(GLOBAL APPEND PROPERTY SUREFOOT_CORE_ARCHIVES ${name})
   endif()
 endfunction()
+
+# OpenCV's three modules that we use. Debian's single -dev packages ship no CMake configuration; the
+# complete libopencv-dev would, at the price of some 400 packages.
+if(NOT SUREFOOT_CORE_ONLY)
+  find_path(OPENCV_INCLUDE opencv2/imgproc.hpp PATH_SUFFIXES opencv4 REQUIRED)
+  add_library(surefoot_opencv INTERFACE)
+  target_include_directories(surefoot_opencv SYSTEM INTERFACE ${OPENCV_INCLUDE})
+  foreach(module core imgproc imgcodecs)
+    find_library(OPENCV_${module} opencv_${module} REQUIRED)
+    target_link_libraries(surefoot_opencv INTERFACE ${OPENCV_${module}})
+  endforeach()
+endif()
