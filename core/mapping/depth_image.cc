@@ -95,6 +95,7 @@ void copy_pixels(const hal::DepthFrame& frame, const SurfaceTest& test, float mi
 
 // 0 is both "no measurement" and the least number, so one minimum serves both.
 void find_nearest(DepthImage& out) {
+  out.farthest_m = 0;
   for (std::int32_t v = 0; v < out.height; ++v) {
     for (std::int32_t u = 0; u < out.width; ++u) {
       const std::size_t i = out.at(u, v);
@@ -109,6 +110,7 @@ void find_nearest(DepthImage& out) {
         least = std::min({least, out.z_m[row - 1], out.z_m[row], out.z_m[row + 1]});
       }
       out.nearest_m[i] = least;
+      out.farthest_m = std::max(out.farthest_m, least);
     }
   }
 }

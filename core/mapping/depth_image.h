@@ -22,6 +22,7 @@ struct DepthImage {
   double fy = 0;
   double cx = 0;
   double cy = 0;
+  float farthest_m = 0;     // largest of nearest_m
   std::array<float, kMaxPixels> z_m{};         // 0: no measurement
   std::array<float, kMaxPixels> nearest_m{};   // least z of the 3 x 3; 0: not all nine measured
   std::array<std::uint8_t, kMaxPixels> mixed{};  // 1: between two surfaces or alone

@@ -61,6 +61,42 @@ class CellView {
   Vector3 origin_;
 };
 
+struct CellRange {
+  std::int32_t ix_begin;
+  std::int32_t ix_end;
+  std::int32_t iy_begin;
+  std::int32_t iy_end;
+};
+
+// The cells under the pyramid of view down to the farthest depth that could clear something, within
+// kMaxClearRadius_cells of the camera and inside the map.
+CellRange seen_range(const Sight& sight, CellIndex first) {
+  const double size = sight.config.cell_size_m;
+  const DepthImage& image = sight.image;
+  const Vector3& origin = sight.X_OC.origin.m;
+  const double radius = kMaxClearRadius_cells * size;
+  Vector3 low = origin;
+  Vector3 high = origin;
+  for (int corner = 0; corner < 4; ++corner) {
+    const double u = corner % 2 == 0 ? 0 : image.width;
+    const double v = corner / 2 == 0 ? 0 : image.height;
+    const Vector3 ray((u - image.cx) / image.fx, (v - image.cy) / image.fy, 1.0);
+    const Vector3 end =
+        origin + sight.X_OC.rotation.matrix * ray * static_cast<double>(image.farthest_m);
+    low = low.cwiseMin(end);
+    high = high.cwiseMax(end);
+  }
+  low = low.cwiseMax(origin - Vector3::Constant(radius));
+  high = high.cwiseMin(origin + Vector3::Constant(radius));
+  const CellIndex begin = cell_index(low.x(), low.y(), size);
+  const CellIndex end = cell_index(high.x(), high.y(), size);
+  const auto clip = [](std::int32_t i, std::int32_t least) {
+    return math::clamp(i, least, least + kMapSide);
+  };
+  return {clip(begin.ix, first.ix), clip(end.ix + 1, first.ix), clip(begin.iy, first.iy),
+          clip(end.iy + 1, first.iy)};
+}
+
 // Called for a cell that was seen through.
 void doubt(const Sight& sight, MapCell& cell, IntegrationReport& report) {
   ++cell.misses;
@@ -134,16 +170,10 @@ void clear_seen_through(const Sight& sight, ControlMap& map, IntegrationReport& 
   const CellView view(sight);
   const double size = sight.config.cell_size_m;
   const Vector3& origin = sight.X_OC.origin.m;
-  const CellIndex camera = cell_index(origin.x(), origin.y(), size);
-  const CellIndex first = map.first();
-  constexpr std::int32_t kRadius = kMaxClearRadius_cells;
-  const std::int32_t iy_begin = std::max(camera.iy - kRadius, first.iy);
-  const std::int32_t iy_end = std::min(camera.iy + kRadius + 1, first.iy + kMapSide);
-  const std::int32_t ix_begin = std::max(camera.ix - kRadius, first.ix);
-  const std::int32_t ix_end = std::min(camera.ix + kRadius + 1, first.ix + kMapSide);
-  for (std::int32_t iy = iy_begin; iy < iy_end; ++iy) {
+  const CellRange range = seen_range(sight, map.first());
+  for (std::int32_t iy = range.iy_begin; iy < range.iy_end; ++iy) {
     const double offset_y = cell_centre(iy, size) - origin.y();
-    map.for_row(iy, ix_begin, ix_end, [&](std::int32_t ix, MapCell& cell) {
+    map.for_row(iy, range.ix_begin, range.ix_end, [&](std::int32_t ix, MapCell& cell) {
       if (!cell.has_height() || cell.stamp_ms == sight.now_ms) return;
       const double offset_x = cell_centre(ix, size) - origin.x();
       switch (view.look(offset_x, offset_y, cell)) {
