@@ -1,0 +1,35 @@
+// The pictures of a run. Each is a Drawing, stored as PNG and put into report.html as SVG.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/common/drawing.h"
+#include "apps/common/height_grid.h"
+#include "apps/common/run_log.h"
+#include "core/robot/robot_model.h"
+#include "core/runtime/statistics.h"
+
+namespace surefoot::apps {
+
+struct TerrainFigure {
+  HeightGrid truth;      // empty (columns == 0) when there is no ground truth
+  HeightGrid perceived;  // same raster as truth
+  Alignment O_in_W;
+  double goal_x_m = 0;
+  double lane_half_width_m = 0;  // 0: no lane
+};
+
+// True ground, perceived map and their difference at one scale, with the traces of body and feet and
+// with the footholds.
+Drawing terrain_figure(const RunLog& log, const TerrainFigure& figure);
+// Speed, tilt and height over time.
+Drawing motion_figure(const RunLog& log);
+// Joint torques against their limits, one row per joint of a leg.
+Drawing torque_figure(const RunLog& log, const robot::RobotModel& robot);
+// Which leg stands and which swings: planned, and felt.
+Drawing gait_figure(const RunLog& log);
+// Median, 99th percentile and maximum of every task against its budget.
+Drawing timing_figure(const std::vector<runtime::TaskReport>& tasks);
+
+}  // namespace surefoot::apps
