@@ -40,8 +40,7 @@ std::uint64_t drain(Port* port, FixedVector<T, kCapacity>& list) {
 
 bool task_valid(const Task& task) {
   if (task.release == nullptr || task.run == nullptr || task.publish == nullptr) return false;
-  if (task.period_ticks == 0 || task.phase_ticks >= task.period_ticks) return false;
-  return task.latency_ticks <= task.period_ticks;
+  return task.period_ticks > 0 && task.phase_ticks < task.period_ticks;
 }
 
 bool setup_valid(const ExecutiveSetup& setup) {
@@ -215,7 +214,9 @@ void Executive::release_slow(std::size_t index) {
   const Task& task = setup_.tasks[index];
   TaskState& state = states_[index];
   if (state.pending) {
-    ++state.skipped;
+    // A task that is released by events may have a period shorter than its latency; only an overrun
+    // makes it miss a release.
+    if (ticks_ > state.due_tick) ++state.skipped;
     return;
   }
   const TimeNs begin = stopwatch();
