@@ -18,7 +18,22 @@ class CellView {
 
   enum class Verdict { kNone, kConsistent, kSeenThrough };
 
-  // offset_x, offset_y: the cell's centre from the camera, in O.
+  // offset_x, offset_y: the cell's centre from the camera, in O. Near the camera a cell is wider than
+  // three pixels, and the surface may fill but a corner of it: all corners must be seen through.
+  Verdict look_at_cell(double offset_x, double offset_y, const MapCell& cell) const {
+    const Verdict verdict = look(offset_x, offset_y, cell);
+    if (verdict != Verdict::kSeenThrough) return verdict;
+    const double half = 0.5 * sight_.config.cell_size_m;
+    for (const double dx : {-half, half}) {
+      for (const double dy : {-half, half}) {
+        if (look(offset_x + dx, offset_y + dy, cell) != Verdict::kSeenThrough) return Verdict::kNone;
+      }
+    }
+    return Verdict::kSeenThrough;
+  }
+
+ private:
+  // One point at the cell's height.
   Verdict look(double offset_x, double offset_y, const MapCell& cell) const {
     const double rise = static_cast<double>(cell.height_m) - origin_.z();
     const double z =
@@ -40,7 +55,6 @@ class CellView {
                                                              : Verdict::kConsistent;
   }
 
- private:
   // How far behind the cell the ray must end: noise of the depth, and what an error of the cell's
   // height or of the attitude amounts to along a ray that descends at a grazing angle.
   double margin(double seen, double offset_x, double offset_y, double rise,
@@ -176,7 +190,7 @@ void clear_seen_through(const Sight& sight, ControlMap& map, IntegrationReport& 
     map.for_row(iy, range.ix_begin, range.ix_end, [&](std::int32_t ix, MapCell& cell) {
       if (!cell.has_height() || cell.stamp_ms == sight.now_ms) return;
       const double offset_x = cell_centre(ix, size) - origin.x();
-      switch (view.look(offset_x, offset_y, cell)) {
+      switch (view.look_at_cell(offset_x, offset_y, cell)) {
         case CellView::Verdict::kNone: break;
         case CellView::Verdict::kConsistent: cell.misses = 0; break;
         case CellView::Verdict::kSeenThrough: doubt(sight, cell, report); break;
