@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/geometry/rotations.h"
+#include "core/math/elementary.h"
 
 namespace surefoot::mapping::test {
 namespace {
@@ -97,8 +98,8 @@ Camera mini_cheetah_camera(const Vector3& position_O_m, double yaw_rad, double d
   camera.X_OC = look(position_O_m, yaw_rad, down_rad);
   camera.intrinsics.width_px = specification.width_px;
   camera.intrinsics.height_px = specification.height_px;
-  camera.intrinsics.fx_px = 80 / std::tan(0.5 * specification.horizontal_view_rad);
-  camera.intrinsics.fy_px = 45 / std::tan(0.5 * specification.vertical_view_rad);
+  camera.intrinsics.fx_px = 80 / math::tan(0.5 * specification.horizontal_view_rad);
+  camera.intrinsics.fy_px = 45 / math::tan(0.5 * specification.vertical_view_rad);
   camera.intrinsics.cx_px = 79.5;
   camera.intrinsics.cy_px = 44.5;
   camera.inverse_depth_sigma_per_m = sensor_model(specification).inverse_depth_sigma_per_m;
