@@ -20,7 +20,8 @@ struct RecordMessage {
   TimeNs stamp;
   std::uint32_t sequence = 0;           // counts the messages of the channel from 0
   std::span<const std::uint8_t> bytes;  // valid until the next call
-  std::uint64_t chunk = 0;              // index of the chunk, from 0
+  std::uint64_t chunk = 0;              // index of its chunk, from 0
+  std::uint64_t chunk_offset = 0;       // byte in the file where its chunk begins
 };
 
 struct RecordDamage {

@@ -1,6 +1,6 @@
 // A board fed from a record: the executive cannot tell it from a robot. The clock grants exactly
 // the recorded ticks, with their late flags, and then answers kEndOfData; the ports deliver exactly
-// what was latched at each tick; what is sent is compared by ReplayComparer and goes nowhere.
+// what was latched at each tick; what is sent goes nowhere (ReplayComparer compares it).
 //
 // Use: open(); build the autonomy from configuration(); make a RecordedRunner on overruns(); give
 // board() to an Executive; call run_tick() until kEndOfData, comparing after each tick; then look
@@ -40,9 +40,10 @@ class ReplayBoard {
   // The resolved configuration of the recorded run, as it was written on
   // RecordChannel::kConfiguration.
   const std::string& configuration() const;
-  // Ports without devices are null where the record never uses them is not known in advance: all
-  // ports a tick can hold are present. record and stopwatch are null.
-  Board board();
+  // All ports a tick's inputs can hold. The clock begins one `period` (of a tick, from the
+  // configuration) before the first recorded tick. record and stopwatch are null: the caller may add
+  // its own.
+  Board board(TimeNs period);
   // TickInputs::slow_task_overruns of the tick being replayed, for runtime::RecordedRunner.
   const std::uint32_t& overruns() const;
   // The tick being replayed: what ReplayComparer compares with. Valid after run_tick() returned

@@ -1,6 +1,7 @@
 // Compares what a replayed tick did with what was recorded and names the first difference.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -28,6 +29,10 @@ class ReplayComparer {
   const ReplayDifference& difference() const { return difference_; }
 
  private:
+  using TickBytes = std::array<std::uint8_t, runtime::kMaxTickBytes>;
+
+  TickBytes recorded_{};  // canonical bytes of the tick being compared
+  TickBytes replayed_{};
   std::uint64_t ticks_ = 0;
   bool different_ = false;
   ReplayDifference difference_;
