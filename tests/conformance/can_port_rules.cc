@@ -42,8 +42,10 @@ class CanSuite {
     check_delivery(3);
     check_delivery(64);
     check_overflow();
-    check_refusals();
-    check_sending();
+    if (bench_.sends()) {
+      check_refusals();
+      check_sending();
+    }
     return findings_.take();
   }
 

@@ -9,6 +9,8 @@
 //   CAN-REFUSE    send of what is no frame: kInvalid, nothing sent
 //   CAN-NO-BUS    send to a bus that is not there: kUnavailable, counted as dropped
 //   CAN-SEND      every other send is kOk and counted, or refused with a documented code and counted
+//
+// A recorded source has no bus to send on: the last three do not apply to it.
 #pragma once
 
 #include <cstddef>
@@ -29,6 +31,8 @@ class CanBench {
   virtual std::size_t arrive(std::uint8_t bus, std::size_t count) = 0;
   // Grows from frame to frame of one bus, or -1 where the backend's frames do not tell.
   virtual std::int64_t number_of(const hal::CanFrame&) const { return -1; }
+  // false: a recorded source, what is sent goes nowhere.
+  virtual bool sends() const { return true; }
   // Buses that are there are 0 .. bus_count() - 1.
   virtual std::size_t bus_count() const = 0;
   // Frames that fit into the receive queue of the whole port; 0: not known or not limited.

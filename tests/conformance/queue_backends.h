@@ -25,6 +25,7 @@ enum class Defect : std::uint8_t {
   kDeliversTwice,
   kBadForm,              // hands out what is out of its domain
   kGapsUnseen,
+  kDropsAreGaps,         // what the full queue dropped is counted as lost before the host too
   kDropsNewest,          // operator: keeps the oldest command
   kAcceptsAnything,      // CAN: sends frames that are none
   kNoBusCheck,           // CAN: sends to buses that are not there
@@ -56,6 +57,7 @@ class SampleQueue {
     if (queue_.size() == kCapacity) {
       queue_.pop_front();
       if (defect_ != Defect::kLosesSilently) ++counters_.dropped;
+      if (defect_ == Defect::kDropsAreGaps) ++counters_.gaps;
     }
     queue_.push_back(std::move(sample));
   }

@@ -8,7 +8,8 @@
 //   SENSOR-FORM      values are in their documented domain
 //   SENSOR-COMPLETE  whatever arrives is delivered or counted as dropped
 //   SENSOR-COUNT     delivered counts what was delivered, counters never go back
-//   SENSOR-GAP       sequence numbers missing before the host are counted as gaps
+//   SENSOR-GAP       sequence numbers missing before the host are counted as gaps, and only those: what
+//                    a full queue drops is counted once, as dropped
 // OperatorPort:
 //   OPERATOR-EMPTY, -FORM, -COUNT  as above
 //   OPERATOR-NEWEST  the newest command is delivered, once
@@ -194,6 +195,8 @@ class SensorSuite {
     findings_.expect(after.delivered - before.delivered == got.size(), "SENSOR-COUNT",
                      std::to_string(after.delivered - before.delivered) + " counted, " +
                          std::to_string(got.size()) + " delivered");
+    findings_.expect(after.gaps == before.gaps, "SENSOR-GAP",
+                     std::to_string(after.gaps - before.gaps) + " counted where none was lost");
   }
 
   void check_order(const Delivered& sample) {

@@ -155,7 +155,8 @@ const auto kSensorDefects = testing::Values(
     Case{Defect::kNone, ""}, Case{Defect::kWritesWhenEmpty, "SENSOR-EMPTY"},
     Case{Defect::kNewestFirst, "SENSOR-ORDER"}, Case{Defect::kDeliversTwice, "SENSOR-ORDER"},
     Case{Defect::kNotCounted, "SENSOR-COUNT"}, Case{Defect::kLosesSilently, "SENSOR-COMPLETE"},
-    Case{Defect::kBadForm, "SENSOR-FORM"}, Case{Defect::kGapsUnseen, "SENSOR-GAP"});
+    Case{Defect::kBadForm, "SENSOR-FORM"}, Case{Defect::kGapsUnseen, "SENSOR-GAP"},
+    Case{Defect::kDropsAreGaps, "SENSOR-GAP"});
 INSTANTIATE_TEST_SUITE_P(Defects, ListSensorSuite, kSensorDefects);
 INSTANTIATE_TEST_SUITE_P(Defects, FrameSensorSuite, kSensorDefects);
 INSTANTIATE_TEST_SUITE_P(DefectsOfLists, ListSensorSuite,

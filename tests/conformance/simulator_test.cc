@@ -1,0 +1,120 @@
+// The simulator's ports against the rules of the HAL interfaces.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "apps/common/config_node.h"
+#include "apps/common/config_reader.h"
+#include "core/actuation/motor_protocol.h"
+#include "sim_hal/simulator.h"
+#include "tests/conformance/can_port_rules.h"
+#include "tests/conformance/clock_rules.h"
+#include "tests/conformance/sensor_rules.h"
+
+namespace surefoot::conformance {
+namespace {
+
+robot::RobotModel mini_cheetah() {
+  apps::ConfigIssues issues;
+  const apps::ConfigNode tree =
+      apps::read_yaml_file(SUREFOOT_SOURCE_DIR "/config/robots/mini_cheetah.yaml", issues);
+  robot::RobotModel model;
+  const apps::ConfigNode* const node = tree.find("robot");
+  if (node != nullptr) apps::ConfigReader::read(*node, model, issues);
+  EXPECT_EQ(apps::to_string(issues), "");
+  return model;
+}
+
+// The trunk on a stand: the robot stays where it is while the suites let time pass.
+class Stand {
+ public:
+  Stand() : simulator_(mini_cheetah(), {}, config(), 1), board_(simulator_.board()) {}
+
+  const hal::Board& board() const { return board_; }
+  void pass(TimeNs time) { EXPECT_TRUE(ok(board_.clock->wait_until(board_.clock->now() + time))); }
+
+ private:
+  static sim::SimulatorConfig config() {
+    sim::SimulatorConfig config;
+    config.start.drop_height_m = 0.3;
+    config.start.trunk_fixed = true;
+    return config;
+  }
+  sim::Simulator simulator_;
+  hal::Board board_;
+};
+
+class SimCanBench final : public CanBench {
+ public:
+  hal::CanPort& port() override { return *stand_.board().can; }
+  // A drive answers every frame that is sent to it. A bus passes about four of these in a millisecond.
+  std::size_t arrive(std::uint8_t bus, std::size_t count) override {
+    const actuation::CommandBytes poll =
+        actuation::encode_special(actuation::FrameKind::kEnterMotorMode);
+    for (std::size_t i = 0; i < count; ++i) {
+      hal::CanFrame frame;
+      frame.bus = bus;
+      frame.id = static_cast<std::uint32_t>(1 + i % 3);
+      frame.size = 8;
+      std::copy(poll.begin(), poll.end(), frame.data.begin());
+      EXPECT_TRUE(ok(port().send(frame)));
+      if (i % 16 == 15) stand_.pass(milliseconds(10));
+    }
+    stand_.pass(milliseconds(10));
+    return count;
+  }
+  std::size_t bus_count() const override { return 4; }
+  std::size_t receive_capacity() const override { return 64; }  // per bus
+
+ private:
+  Stand stand_;
+};
+
+// `period` is a little more than the sensor's.
+template <class Bench>
+class SimSensorBench final : public Bench {
+ public:
+  SimSensorBench(typename Bench::Port* hal::Board::*port, TimeNs period, std::size_t capacity)
+      : port_(port), period_(period), capacity_(capacity) {
+    stand_.pass(period);
+  }
+  typename Bench::Port& port() override { return *(stand_.board().*port_); }
+  std::size_t arrive(std::size_t count) override {
+    for (std::size_t i = 0; i < count; ++i) stand_.pass(period_);
+    return count;
+  }
+  std::size_t capacity() const override { return capacity_; }
+
+ private:
+  Stand stand_;
+  typename Bench::Port* hal::Board::*port_;
+  TimeNs period_;
+  std::size_t capacity_;
+};
+
+TEST(Simulator, CanPortKeepsTheRules) {
+  SimCanBench bench;
+  EXPECT_EQ(joined(can_port_violations(bench)), "");
+}
+
+TEST(Simulator, ImuPortKeepsTheRules) {
+  SimSensorBench<ImuBench> bench(&hal::Board::imu, milliseconds(1), 64);
+  EXPECT_EQ(joined(sensor_violations<ImuBench>(bench)), "");
+}
+
+TEST(Simulator, DepthCameraPortKeepsTheRules) {
+  SimSensorBench<DepthBench> bench(&hal::Board::depth_camera, milliseconds(34), 8);
+  EXPECT_EQ(joined(sensor_violations<DepthBench>(bench)), "");
+}
+
+TEST(Simulator, ClockKeepsTheRules) {
+  Stand stand;
+  const ClockBench bench{.clock = stand.board().clock,
+                         .period = milliseconds(2),
+                         .allowed_overshoot = microseconds(500)};
+  EXPECT_EQ(joined(clock_violations(bench)), "");
+}
+
+}  // namespace
+}  // namespace surefoot::conformance
