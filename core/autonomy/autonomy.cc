@@ -52,7 +52,8 @@ void Autonomy::run_control() {
 void Autonomy::receive() {
   bus_.receive({inputs_->can.data(), inputs_->can.size()});
   imu_silent_s_ = inputs_->imu.empty() ? imu_silent_s_ + tick_s_ : 0.0;
-  const bool still = mission_.phase() == MissionPhase::kSettle;
+  // Only while nothing acts: a robot that balances on a biased gyro turns until the gyro reads zero.
+  const bool still = mission_.phase() == MissionPhase::kEnableDrives;
   imu_refused_ += estimator_.update(inputs_->stamp, {inputs_->imu.data(), inputs_->imu.size()},
                                     bus_.states(), locomotion_.gait_phases(), still);
   if (walking_ready_) history_.push(estimator_.state());

@@ -51,6 +51,7 @@ struct MissionConfig {
   double heading_gain_1_s = 0;
   double max_lateral_m_s = 0;
   double max_yaw_rate_rad_s = 0;
+  double rest_s = 0;               // lying still before standing up: the gyro's bias is learned
   double settle_s = 0;             // standing still before the first step
   double stand_s = 0;              // mission stand: how long
   double timeout_s = 0;            // of the whole mission
@@ -65,6 +66,7 @@ struct MissionConfig {
     visit.real("heading_gain_1_s", self.heading_gain_1_s, {0.0, 10.0}, "along the line");
     visit.real("max_lateral_m_s", self.max_lateral_m_s, {0.0, 2.0}, "sideways");
     visit.real("max_yaw_rate_rad_s", self.max_yaw_rate_rad_s, {0.0, 5.0}, "turning");
+    visit.real("rest_s", self.rest_s, {0.0, 60.0}, "lying still before standing up");
     visit.real("settle_s", self.settle_s, {0.1, 60.0}, "standing still before the first step");
     visit.real("stand_s", self.stand_s, {0.0, 3600.0}, "mission stand: how long");
     visit.real("timeout_s", self.timeout_s, {1.0, 36000.0}, "of the whole mission");

@@ -5,7 +5,7 @@
 namespace surefoot::autonomy {
 namespace {
 
-constexpr double kDriveEnable_s = 1.0;   // drives must answer within this time
+constexpr double kDriveEnable_s = 1.0;   // drives must answer within this time after the rest
 constexpr double kArrivedHold_s = 0.5;   // standing at the goal before the mission counts as done
 
 }  // namespace
@@ -42,8 +42,8 @@ void Mission::update(const estimation::RobotState& state, const MissionFacts& fa
 
   switch (phase_) {
     case MissionPhase::kEnableDrives:
-      if (facts.drives_ready) return enter(MissionPhase::kStandUp);
-      if (phase_s_ > kDriveEnable_s) return stop(StopReason::kDriveSilent);
+      if (facts.drives_ready && phase_s_ >= config_.rest_s) return enter(MissionPhase::kStandUp);
+      if (phase_s_ > config_.rest_s + kDriveEnable_s) return stop(StopReason::kDriveSilent);
       break;
     case MissionPhase::kStandUp:
       if (facts.stand_up_done) return enter(MissionPhase::kSettle);

@@ -3,7 +3,7 @@
 // The gyro is integrated as rotation vectors; the accelerometer's "up" pulls roll and pitch back with a
 // first-order gain and teaches the gyro bias with an integral gain (explicit complementary filter,
 // Mahony, Hamel, Pflimlin, IEEE TAC 2008, eq. 32). Yaw has no reference: it drifts with the gyro.
-// While the robot stands still the bias of all three axes is learned directly.
+// While the robot lies still the bias of all three axes is learned directly and gravity pulls harder.
 #pragma once
 
 #include "core/base/status.h"
@@ -22,9 +22,10 @@ class AttitudeEstimator {
  public:
   void reset(const AttitudeConfig& config, const robot::ImuSpecification& imu);
 
-  // Takes the next sample. The first one sets roll and pitch from its specific force, yaw = 0.
+  // Takes the next sample. Roll and pitch start from the mean specific force of the first
+  // kStartSamples in a row that look like rest (gravity alone within max_gravity_error_m_s2), yaw = 0.
   // kInvalid: a value is not finite, or the stamp is not after the last one; nothing changed.
-  Status update(const hal::ImuSample& sample, bool standing_still);
+  Status update(const hal::ImuSample& sample, bool lying_still);
 
   bool initialised() const { return initialised_; }
   const geometry::Quaternion& q_OB() const { return q_OB_; }
@@ -37,13 +38,18 @@ class AttitudeEstimator {
   TimeNs stamp() const { return stamp_; }
 
  private:
-  void initialise(const Vector3& specific_force_B_m_s2);
+  static constexpr int kStartSamples = 50;
+
+  bool looks_like_rest(const Vector3& specific_force_B_m_s2) const;
+  void gather_start(const Vector3& specific_force_B_m_s2);
   Vector3 gravity_correction(const Vector3& specific_force_B_m_s2) const;
 
   AttitudeConfig config_;
   Matrix3 R_BI_ = Matrix3::Identity();
   Vector3 p_BI_m_ = Vector3::Zero();
   bool initialised_ = false;
+  int start_samples_ = 0;
+  Vector3 start_sum_m_s2_ = Vector3::Zero();
   TimeNs stamp_;
   geometry::Quaternion q_OB_;
   Matrix3 R_OB_ = Matrix3::Identity();

@@ -9,7 +9,8 @@ struct AttitudeConfig {
   double correction_gain_1_s = 0;        // pull of the accelerometer's "up" on roll and pitch
   double bias_gain_1_s2 = 0;             // the same error's pull on the gyro bias
   double max_gravity_error_m_s2 = 0;     // no correction when | |f| - g | exceeds this
-  double still_bias_gain_1_s = 0;        // bias = low-pass of the gyro while standing still
+  double still_correction_gain_1_s = 0;  // the same while the robot lies still
+  double still_bias_gain_1_s = 0;        // bias = low-pass of the gyro while the robot lies still
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -18,8 +19,10 @@ struct AttitudeConfig {
     visit.real("bias_gain_1_s2", self.bias_gain_1_s2, {0.0, 10.0}, "the same error on the gyro bias");
     visit.real("max_gravity_error_m_s2", self.max_gravity_error_m_s2, {0.1, 20.0},
                "no correction when | |f| - g | exceeds this");
+    visit.real("still_correction_gain_1_s", self.still_correction_gain_1_s, {0.0, 50.0},
+               "pull of the accelerometer while lying still");
     visit.real("still_bias_gain_1_s", self.still_bias_gain_1_s, {0.0, 20.0},
-               "gyro bias low-pass while standing still");
+               "gyro bias low-pass while lying still");
   }
 };
 
@@ -27,6 +30,7 @@ struct ContactConfig {
   double observer_gain_1_s = 0;          // bandwidth of the momentum observer
   double touchdown_force_N = 0;          // above: contact begins
   double lift_off_force_N = 0;           // below: contact ends
+  double max_touchdown_speed_m_s = 0;    // a foot that sinks faster is still in the air
   double earliest_swing_phase = 0;       // no touchdown before this share of a swing
   int confirm_ticks = 0;                 // consecutive ticks above the threshold
 
@@ -35,6 +39,8 @@ struct ContactConfig {
     visit.real("observer_gain_1_s", self.observer_gain_1_s, {1.0, 1000.0}, "momentum observer");
     visit.real("touchdown_force_N", self.touchdown_force_N, {0.1, 500.0}, "above: contact begins");
     visit.real("lift_off_force_N", self.lift_off_force_N, {0.0, 500.0}, "below: contact ends");
+    visit.real("max_touchdown_speed_m_s", self.max_touchdown_speed_m_s, {0.01, 5.0},
+               "a foot that sinks faster is still in the air");
     visit.real("earliest_swing_phase", self.earliest_swing_phase, {0.0, 1.0},
                "no touchdown before this share of a swing");
     visit.integer("confirm_ticks", self.confirm_ticks, {1, 50}, "consecutive ticks required");

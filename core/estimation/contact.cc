@@ -53,32 +53,31 @@ Vector3 ContactEstimator::external_torque_Nm(std::size_t leg, const Vector3& qd,
 
 void ContactEstimator::update(const std::array<actuation::JointState, robot::kJoints>& joints,
                               const std::array<GaitPhase, robot::kLegs>& gait,
+                              const std::array<FootMotion, robot::kLegs>& motion,
                               const Matrix3& R_OB) {
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    Vector3 q;
     Vector3 qd;
     Vector3 torque;
     for (std::size_t i = 0; i < robot::kJointsPerLeg; ++i) {
       const actuation::JointState& joint = joints[robot::joint_index(leg, i)];
       const auto row = static_cast<Eigen::Index>(i);
-      q[row] = joint.position_rad;
       qd[row] = joint.velocity_rad_s;
       torque[row] = joint.torque_Nm;
     }
     const Vector3 external = external_torque_Nm(leg, qd, torque);
     // J^T F = external. Near a straight knee J is singular: F is left as it was.
-    const Matrix3 jacobian = robot::foot_jacobian_B(model_, leg, q);
+    const Matrix3& jacobian = motion[leg].jacobian_B;
     constexpr double kSmallestDeterminant_m3 = 1e-4;
     const double determinant = jacobian.determinant();
     if (determinant > kSmallestDeterminant_m3 || determinant < -kSmallestDeterminant_m3) {
       feet_[leg].force_O_N = R_OB * (jacobian.transpose().inverse() * external);
     }
-    decide(leg, gait[leg]);
+    decide(leg, gait[leg], motion[leg]);
   }
   started_ = true;
 }
 
-void ContactEstimator::decide(std::size_t leg, const GaitPhase& gait) {
+void ContactEstimator::decide(std::size_t leg, const GaitPhase& gait, const FootMotion& motion) {
   FootContact& foot = feet_[leg];
   const double force_N = foot.force_O_N[2];
   const bool may_touch =
@@ -88,8 +87,9 @@ void ContactEstimator::decide(std::size_t leg, const GaitPhase& gait) {
     next = false;
     confirmations_[leg] = 0;
   } else {
+    const bool stopped = motion.vertical_velocity_O_m_s > -config_.max_touchdown_speed_m_s;
     const bool disagrees = foot.in_contact ? force_N < config_.lift_off_force_N
-                                           : force_N > config_.touchdown_force_N;
+                                           : stopped && force_N > config_.touchdown_force_N;
     confirmations_[leg] = disagrees ? confirmations_[leg] + 1 : 0;
     if (confirmations_[leg] >= config_.confirm_ticks) {
       next = !foot.in_contact;

@@ -4,7 +4,8 @@
 // A torque command alone proves nothing (a leg pushing into the air reports the torque too). The
 // observer compares the torque with the momentum the leg gains; what is missing went into the ground
 // (generalised-momentum residual, De Luca and Mattone, ICRA 2003), with a constant diagonal inertia per
-// joint, which the reflected rotors dominate.
+// joint, which the reflected rotors dominate. A swinging leg that brakes leaves a residual too, so a
+// touchdown also needs the foot to have stopped sinking.
 #pragma once
 
 #include <array>
@@ -23,6 +24,12 @@ struct GaitPhase {
   double swing_progress = 0;  // 0..1 within a planned swing
 };
 
+// A foot's motion as the joints and the body's velocity show it.
+struct FootMotion {
+  Matrix3 jacobian_B = Matrix3::Zero();
+  double vertical_velocity_O_m_s = 0;
+};
+
 struct FootContact {
   bool in_contact = false;
   std::uint32_t ticks_since_change = 0;
@@ -35,13 +42,14 @@ class ContactEstimator {
 
   // Joint states in the order of robot::joint_index; R_OB from the attitude estimator.
   void update(const std::array<actuation::JointState, robot::kJoints>& joints,
-              const std::array<GaitPhase, robot::kLegs>& gait, const Matrix3& R_OB);
+              const std::array<GaitPhase, robot::kLegs>& gait,
+              const std::array<FootMotion, robot::kLegs>& motion, const Matrix3& R_OB);
 
   const std::array<FootContact, robot::kLegs>& feet() const { return feet_; }
 
  private:
   Vector3 external_torque_Nm(std::size_t leg, const Vector3& qd_rad_s, const Vector3& torque_Nm);
-  void decide(std::size_t leg, const GaitPhase& gait);
+  void decide(std::size_t leg, const GaitPhase& gait, const FootMotion& motion);
 
   ContactConfig config_;
   robot::RobotModel model_;

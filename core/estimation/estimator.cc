@@ -24,10 +24,10 @@ void Estimator::place(const Vector3& p_OB_m) {
 std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
                               const std::array<actuation::JointState, robot::kJoints>& joints,
                               const std::array<GaitPhase, robot::kLegs>& gait,
-                              bool standing_still) {
+                              bool lying_still) {
   std::size_t refused = 0;
   for (const hal::ImuSample& sample : imu) {
-    if (!ok(attitude_.update(sample, standing_still))) ++refused;
+    if (!ok(attitude_.update(sample, lying_still))) ++refused;
   }
   state_.stamp = stamp;
   state_.joints = joints;
@@ -37,22 +37,38 @@ std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
   state_.angular_velocity_B_rad_s = attitude_.angular_velocity_B_rad_s();
   state_.yaw_rad = math::atan2(state_.R_OB(1, 0), state_.R_OB(0, 0));
 
-  contact_.update(joints, gait, state_.R_OB);
-  const auto observations = observe_feet();
+  observe_feet();
+  decide_contacts(gait);
   const Vector3 acceleration_O =
       state_.R_OB * attitude_.specific_force_B_m_s2() - Vector3(0.0, 0.0, kGravity_m_s2);
-  body_.update(acceleration_O, observations, tick_s_);
+  body_.update(acceleration_O, observations_, tick_s_);
 
   state_.p_OB_m = body_.p_OB_m();
   state_.v_OB_m_s = body_.v_OB_m_s();
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    state_.feet[leg].p_O_m = state_.p_OB_m + observations[leg].from_body_O_m;
+    state_.feet[leg].p_O_m = state_.p_OB_m + observations_[leg].from_body_O_m;
   }
   return refused;
 }
 
-std::array<FootObservation, robot::kLegs> Estimator::observe_feet() {
-  std::array<FootObservation, robot::kLegs> observations;
+void Estimator::decide_contacts(const std::array<GaitPhase, robot::kLegs>& gait) {
+  std::array<FootMotion, robot::kLegs> motion;
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    motion[leg].jacobian_B = state_.feet[leg].jacobian_B;
+    motion[leg].vertical_velocity_O_m_s =
+        state_.v_OB_m_s[2] + observations_[leg].velocity_from_body_O_m_s[2];
+  }
+  contact_.update(state_.joints, gait, motion, state_.R_OB);
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    const FootContact& contact = contact_.feet()[leg];
+    state_.feet[leg].in_contact = contact.in_contact;
+    state_.feet[leg].ticks_since_change = contact.ticks_since_change;
+    state_.feet[leg].force_O_N = contact.force_O_N;
+    observations_[leg].in_contact = contact.in_contact;
+  }
+}
+
+void Estimator::observe_feet() {
   const Vector3& omega_B = state_.angular_velocity_B_rad_s;
   const Vector3 contact_to_centre_O(0.0, 0.0, model_.foot_radius_m);
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
@@ -67,13 +83,8 @@ std::array<FootObservation, robot::kLegs> Estimator::observe_feet() {
     foot.p_B_m = robot::foot_position_B_m(model_, leg, q);
     foot.jacobian_B = robot::foot_jacobian_B(model_, leg, q);
     foot.v_B_m_s = foot.jacobian_B * qd;
-    const FootContact& contact = contact_.feet()[leg];
-    foot.in_contact = contact.in_contact;
-    foot.ticks_since_change = contact.ticks_since_change;
-    foot.force_O_N = contact.force_O_N;
 
-    FootObservation& observation = observations[leg];
-    observation.in_contact = contact.in_contact;
+    FootObservation& observation = observations_[leg];
     observation.from_body_O_m = state_.R_OB * foot.p_B_m;
     observation.velocity_from_body_O_m_s =
         state_.R_OB * (foot.v_B_m_s + omega_B.cross(foot.p_B_m));
@@ -81,7 +92,6 @@ std::array<FootObservation, robot::kLegs> Estimator::observe_feet() {
         state_.R_OB * (omega_B + robot::shank_angular_velocity_B(q, qd));
     observation.rolling_velocity_O_m_s = shank_omega_O.cross(contact_to_centre_O);
   }
-  return observations;
 }
 
 }  // namespace surefoot::estimation

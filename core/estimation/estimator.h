@@ -45,7 +45,7 @@ class Estimator {
   // imu: samples of this tick, oldest first. Returns how many were refused (not finite, out of order).
   std::size_t update(TimeNs stamp, std::span<const hal::ImuSample> imu,
                      const std::array<actuation::JointState, robot::kJoints>& joints,
-                     const std::array<GaitPhase, robot::kLegs>& gait, bool standing_still);
+                     const std::array<GaitPhase, robot::kLegs>& gait, bool lying_still);
 
   // Declares where the trunk is: O's origin lies on the ground below it.
   void place(const Vector3& p_OB_m);
@@ -55,13 +55,15 @@ class Estimator {
   const Vector3& gyro_bias_B_rad_s() const { return attitude_.gyro_bias_B_rad_s(); }
 
  private:
-  std::array<FootObservation, robot::kLegs> observe_feet();
+  void observe_feet();
+  void decide_contacts(const std::array<GaitPhase, robot::kLegs>& gait);
 
   robot::RobotModel model_;
   double tick_s_ = 0;
   AttitudeEstimator attitude_;
   ContactEstimator contact_;
   BodyStateEstimator body_;
+  std::array<FootObservation, robot::kLegs> observations_;
   RobotState state_;
 };
 
