@@ -1,5 +1,5 @@
-// A fixed number of slots, taken and given back in any order; an item never moves. A handle outlives
-// its item safely: it carries the slot's generation, so that it finds nothing once the item is gone.
+// A fixed number of slots, taken and given back in any order; an item never moves. A handle may
+// outlive its item: it carries the slot's generation and finds nothing once the item is gone.
 // The free slot with the lowest index is taken first, so that the order of slots depends on the
 // order of calls only. Cost: acquire O(capacity / 64), the rest O(1).
 #pragma once

@@ -67,7 +67,7 @@ TEST(Rotations, QuaternionsAndMatricesRoundTrip) {
 TEST(Rotations, HalfTurnsAboutEveryAxisConvertBack) {
   Random random(3);
   for (int i = 0; i < 5000; ++i) {
-    // Half turns up to a rounding: w is 0 or close to it, each of x, y, z takes its turn as largest.
+    // Half turns up to a rounding: w is nearly 0, each of x, y, z takes its turn as the largest.
     const Vector3 axis = random_vector(random, 1).normalized();
     const double angle = kPi - (i % 4) * 1e-9;
     const Matrix3 r = to_matrix(from_rotation_vector(axis * angle));

@@ -1,6 +1,6 @@
 // Error measurement for the elementary functions: arguments drawn over a range, the oracle computed
-// in long double (64 bits of mantissa on x86-64, 113 on aarch64), whose own error is below 0.001 ulp
-// of a double.
+// in long double (64 bits of mantissa on x86-64, 113 on aarch64), whose own error is below
+// 0.001 ulp of a double.
 #pragma once
 
 #include <algorithm>

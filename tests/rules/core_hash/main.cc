@@ -1,0 +1,35 @@
+#include <cinttypes>
+#include <cstdio>
+
+#include "tests/rules/core_hash/workloads.h"
+
+namespace {
+
+struct Workload {
+  const char* name;
+  void (*run)(surefoot::Fnv64& hash);
+};
+
+constexpr Workload kWorkloads[] = {
+    {"random", surefoot::tests::hash_random},
+    {"elementary", surefoot::tests::hash_elementary},
+    {"linear_algebra", surefoot::tests::hash_linear_algebra},
+    {"geometry", surefoot::tests::hash_geometry},
+    {"kinematics", surefoot::tests::hash_kinematics},
+    {"actuation", surefoot::tests::hash_actuation},
+    {"attitude", surefoot::tests::hash_attitude},
+    {"mapping", surefoot::tests::hash_mapping},
+    {"swing", surefoot::tests::hash_swing},
+    {"force_distribution", surefoot::tests::hash_force_distribution},
+};
+
+}  // namespace
+
+int main() {
+  for (const Workload& workload : kWorkloads) {
+    surefoot::Fnv64 hash;
+    workload.run(hash);
+    std::printf("%-20s %016" PRIx64 "\n", workload.name, hash.value());
+  }
+  return 0;
+}

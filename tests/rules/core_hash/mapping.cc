@@ -1,0 +1,104 @@
+// Workload of core/mapping: a camera flies over steps and looks down at them.
+#include <memory>
+
+#include "core/base/fields.h"
+#include "core/base/random.h"
+#include "core/geometry/rotations.h"
+#include "core/mapping/map_window.h"
+#include "core/mapping/mapper.h"
+#include "tests/rules/core_hash/workloads.h"
+
+namespace surefoot::tests {
+namespace {
+
+constexpr std::uint16_t kWidth_px = 160;
+constexpr std::uint16_t kHeight_px = 90;
+constexpr double kFocal_px = 84.0;
+
+mapping::MappingConfig configuration() {
+  mapping::MappingConfig config;
+  config.enabled = true;
+  config.cell_size_m = 0.015;
+  config.max_height_above_body_m = 0.30;
+  config.self_inflation_m = 0.025;
+  config.depth_noise_floor_m = 0.002;
+  config.attitude_noise_rad = 0.003;
+  config.edge_filter_sigma = 3;
+  config.gate_sigma = 3;
+  config.process_noise_m2_s = 1e-6;
+  config.min_sigma_m = 0.002;
+  config.max_sigma_m = 0.1;
+  config.confirmations_up = 2;
+  config.confirmations_down = 3;
+  config.clear_sigma = 3;
+  config.clear_margin_m = 0.015;
+  config.clear_height_margin_m = 0.006;
+  config.clear_frames = 3;
+  config.ceiling_pixel_stride = 3;
+  config.bridge_holes = true;
+  config.foothold_radius_cells = 2;
+  config.foothold_max_unknown = 3;
+  config.foothold_max_raise_m = 0.02;
+  config.foothold_max_drop_m = 0.02;
+  config.foothold_max_slope = 0.5;
+  return config;
+}
+
+mapping::CameraPose camera_pose(int frame) {
+  Matrix3 optical;
+  optical << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  mapping::CameraPose pose;
+  pose.rotation.matrix =
+      geometry::from_roll_pitch_yaw(0.02 * (frame % 3), 0.7, 0.03 * frame) * optical;
+  pose.origin.m = Vector3(0.02 * frame, 0.005 * frame, 0.35);
+  return pose;
+}
+
+// Level ground with steps across it every 0.3 m; the walls between them are left out.
+void render(const mapping::CameraPose& X_OC, Random& random, hal::DepthFrame& out) {
+  for (int v = 0; v < kHeight_px; ++v) {
+    for (int u = 0; u < kWidth_px; ++u) {
+      const Vector3 ray_C((u - 79.5) / kFocal_px, (v - 44.5) / kFocal_px, 1.0);
+      const Vector3 ray = X_OC.rotation.matrix * ray_C;
+      double z_m = ray.z() < -1e-3 ? X_OC.origin.m.z() / -ray.z() : 0;
+      const double ahead_m = X_OC.origin.m.x() + z_m * ray.x();
+      if (z_m > 0 && static_cast<int>(ahead_m * 10 + 1000) % 6 < 3) {
+        z_m = (X_OC.origin.m.z() - 0.04) / -ray.z();
+      }
+      z_m += z_m * z_m * 0.004 * random.normal();
+      const double units = z_m > 0.2 && z_m < 3.5 ? z_m * 1000 : 0;
+      out.depth[static_cast<std::size_t>(v) * kWidth_px + static_cast<std::size_t>(u)] =
+          static_cast<std::uint16_t>(units);
+    }
+  }
+}
+
+}  // namespace
+
+void hash_mapping(Fnv64& hash) {
+  const auto mapper = std::make_unique<mapping::Mapper>();
+  const auto frame = std::make_unique<hal::DepthFrame>();
+  const auto window = std::make_unique<mapping::MapWindow>();
+  hash.byte(static_cast<std::uint8_t>(mapper->configure(configuration(), {0.0006, 0.17, 4.0})));
+  frame->intrinsics = {kWidth_px, kHeight_px, kFocal_px, kFocal_px, 79.5, 44.5};
+  Random random(7);
+  for (int i = 0; i < 20; ++i) {
+    const mapping::CameraPose X_OC = camera_pose(i);
+    frame->stamp = milliseconds(33 * (i + 1));
+    frame->sequence = static_cast<std::uint32_t>(i);
+    render(X_OC, random, *frame);
+    mapping::SelfModel self;
+    self.X_OB.origin.m = X_OC.origin.m;
+    mapping::IntegrationReport report;
+    hash.byte(static_cast<std::uint8_t>(mapper->integrate(*frame, X_OC, self, &report)));
+    hash.word(report.points, 4);
+    hash.word(report.cells_fused, 4);
+    hash.byte(static_cast<std::uint8_t>(
+        mapper->publish(X_OC.origin.m.x() + 0.4, X_OC.origin.m.y(), *window)));
+    FieldHasher hasher(hash);
+    for (const mapping::WindowCell& cell : window->cells) hasher.members(cell);
+  }
+  hash.word(mapper->digest(), 8);
+}
+
+}  // namespace surefoot::tests

@@ -1,0 +1,90 @@
+// Workloads of core/robot, core/actuation and core/estimation.
+#include <array>
+
+#include "core/actuation/motor_protocol.h"
+#include "core/base/random.h"
+#include "core/estimation/attitude.h"
+#include "core/robot/kinematics.h"
+#include "tests/rules/core_hash/workloads.h"
+
+namespace surefoot::tests {
+namespace {
+
+robot::RobotModel mini_cheetah() {
+  robot::RobotModel model;
+  model.abad_x_m = 0.19;
+  model.abad_y_m = 0.049;
+  model.hip_offset_m = 0.062;
+  model.thigh_length_m = 0.209;
+  model.knee_offset_m = 0.004;
+  model.shank_length_m = 0.195;
+  return model;
+}
+
+}  // namespace
+
+void hash_kinematics(Fnv64& hash) {
+  const robot::RobotModel model = mini_cheetah();
+  Random random(4);
+  for (int i = 0; i < 5000; ++i) {
+    const std::size_t leg = random.below(4);
+    robot::LegVector q;
+    q[0] = random.uniform(-0.8, 0.8);
+    q[1] = random.uniform(-1.5, 0.6);
+    q[2] = random.uniform(0.3, 2.6);
+    Vector3 target = robot::foot_position_B_m(model, leg, q);
+    mix(hash, target);
+    mix(hash, robot::foot_jacobian_B(model, leg, q));
+    for (int axis = 0; axis < 3; ++axis) target[axis] += random.uniform(-0.05, 0.05);
+    const robot::LegSolution solution = robot::solve_leg(model, leg, target);
+    mix(hash, solution.q_rad);
+    hash.byte(static_cast<std::uint8_t>(solution.status));
+  }
+}
+
+void hash_actuation(Fnv64& hash) {
+  constexpr actuation::WireRanges kRanges = {12.5, 45.0, 500.0, 5.0, 18.0};
+  Random random(5);
+  for (int i = 0; i < 20000; ++i) {
+    actuation::DriveCommand command;
+    command.position_rad = random.uniform(-14, 14);
+    command.velocity_rad_s = random.uniform(-50, 50);
+    command.kp_Nm_rad = random.uniform(0, 500);
+    command.kd_Nm_s_rad = random.uniform(0, 5);
+    command.torque_Nm = random.uniform(-20, 20);
+    actuation::CommandBytes bytes{};
+    hash.byte(static_cast<std::uint8_t>(actuation::encode_command(kRanges, command, bytes)));
+    hash.bytes(bytes.data(), bytes.size());
+    const Result<actuation::DriveCommand> back = actuation::decode_command(kRanges, bytes);
+    mix(hash, back.value().position_rad);
+    mix(hash, back.value().torque_Nm);
+  }
+}
+
+void hash_attitude(Fnv64& hash) {
+  estimation::AttitudeConfig config;
+  config.correction_gain_1_s = 1.0;
+  config.bias_gain_1_s2 = 0.05;
+  config.max_gravity_error_m_s2 = 3.0;
+  config.still_bias_gain_1_s = 1.0;
+  robot::ImuSpecification imu;
+  imu.rate_Hz = 1000;
+  imu.mount.position_B_m = {0.01, -0.02, 0.03};
+  imu.mount.roll_pitch_yaw_rad = {0.1, -0.2, 0.3};
+  estimation::AttitudeEstimator estimator;
+  estimator.reset(config, imu);
+  Random random(6);
+  for (int i = 0; i < 5000; ++i) {
+    hal::ImuSample sample;
+    sample.stamp = milliseconds(i + 1);
+    for (double& rate : sample.angular_velocity_I_rad_s) rate = random.normal();
+    for (double& force : sample.specific_force_I_m_s2) force = random.normal();
+    sample.specific_force_I_m_s2[2] += 9.81;
+    hash.byte(static_cast<std::uint8_t>(estimator.update(sample, i < 500)));
+    mix(hash, estimator.R_OB());
+    mix(hash, estimator.gyro_bias_B_rad_s());
+    mix(hash, estimator.specific_force_B_m_s2());
+  }
+}
+
+}  // namespace surefoot::tests
