@@ -34,15 +34,6 @@ struct HeightGrid {
   double top_m() const { return y_m + rows * cell_m; }
 };
 
-struct MapError {
-  double rmse_m = 0;          // of the cells known in both; 0 where there is none
-  double known_fraction = 0;  // of the cells of `truth` inside the corridor
-  std::size_t compared = 0;
-};
-
-// perceived - truth over the rectangle x_begin..x_end, |y| <= half_width (W). Same raster required.
-MapError compare(const HeightGrid& perceived, const HeightGrid& truth, double x_begin, double x_end,
-                 double half_width);
 // perceived - truth where both are known.
 HeightGrid difference(const HeightGrid& perceived, const HeightGrid& truth);
 

@@ -191,22 +191,6 @@ TEST(Figures, ThinnedSeriesKeepsExtremes) {
   EXPECT_NEAR(top, 0.0, 1e-9);
 }
 
-TEST(HeightGrid, ErrorCountsOnlyTheCorridor) {
-  HeightGrid truth(0, -1, 2, 2, 0.1);
-  for (int row = 0; row < 20; ++row) {
-    for (int column = 0; column < 20; ++column) truth.set(column, row, 0.0);
-  }
-  HeightGrid perceived(0, -1, 2, 2, 0.1);
-  for (int row = 0; row < 20; ++row) {
-    for (int column = 0; column < 10; ++column) perceived.set(column, row, 0.02);
-  }
-  const MapError error = compare(perceived, truth, 0.0, 2.0, 0.5);
-  EXPECT_NEAR(error.rmse_m, 0.02, 1e-6);
-  EXPECT_NEAR(error.known_fraction, 0.5, 1e-9);
-  EXPECT_EQ(error.compared, 100u);
-  EXPECT_EQ(compare(perceived, truth, 1.0, 2.0, 0.5).compared, 0u);
-}
-
 TEST(RunLog, AlignmentUndoesATurnAndAShift) {
   RunSample sample;
   sample.truth.p_WB_m = {1, 2, 0.3};

@@ -1,0 +1,28 @@
+// One run from start to summary: what `surefoot run` does.
+#pragma once
+
+#include <filesystem>
+
+#include "apps/common/config_root.h"
+#include "apps/common/stack.h"
+
+namespace surefoot::apps {
+
+struct RunOptions {
+  RunRequest request;
+  std::filesystem::path out;  // empty: a new folder under out/
+  bool record = true;         // record.mcap
+  bool can_log = false;       // can.log
+  bool report = true;         // report.html and *.png
+  bool realtime = false;      // hold the simulation back to real time
+  bool quiet = false;         // no progress, no verdict
+};
+
+// The program's exit code: 0 goal, 1 not, 2 wrong use or configuration, 3 fault (of the robot, or of
+// this program: nothing could be written).
+int run(const RunOptions& options, Stack& stack);
+
+// Prints the issues to standard error; the exit code for wrong configuration.
+int refuse(const ConfigIssues& issues);
+
+}  // namespace surefoot::apps

@@ -1,0 +1,77 @@
+#include "apps/common/stack.h"
+
+namespace surefoot::apps {
+
+using autonomy::Autonomy;
+using autonomy::TickInputs;
+using autonomy::TickOutputs;
+
+namespace {
+
+// Budgets on the robot's computer; a campaign's summaries say what was used (docs/timing.md).
+constexpr std::uint32_t kControlBudget_us = 1000;
+constexpr std::uint32_t kMappingBudget_us = 10000;
+
+Autonomy& of(void* self) { return *static_cast<Autonomy*>(self); }
+
+runtime::Task control_task(Autonomy& autonomy) {
+  runtime::Task task;
+  task.name = "control";
+  task.budget_us = kControlBudget_us;
+  task.self = &autonomy;
+  task.release = [](void* self, const TickInputs& inputs) {
+    of(self).begin_control(inputs);
+    return true;
+  };
+  task.run = [](void* self) { of(self).run_control(); };
+  task.publish = [](void* self, TickOutputs& outputs) { of(self).publish_control(outputs); };
+  return task;
+}
+
+// After control in the table: a frame is mapped with the pose history of the tick that brought it.
+runtime::Task mapping_task(Autonomy& autonomy) {
+  runtime::Task task;
+  task.name = "mapping";
+  task.latency_ticks = autonomy::kMapLatencyTicks;
+  task.budget_us = kMappingBudget_us;
+  task.self = &autonomy;
+  task.release = [](void* self, const TickInputs& inputs) { return of(self).begin_mapping(inputs); };
+  task.run = [](void* self) { of(self).run_mapping(); };
+  task.publish = [](void* self, TickOutputs&) { of(self).publish_mapping(); };
+  return task;
+}
+
+}  // namespace
+
+Status Stack::start(const Config& config, const hal::Board& board, runtime::SlowTaskRunner& runner,
+                    runtime::TickObserver* observer) {
+  const Status ready = autonomy_.reset(config.robot, config.autonomy);
+  if (!ok(ready)) return ready;
+  tasks_ = {control_task(autonomy_), mapping_task(autonomy_)};
+  runtime::ExecutiveSetup setup;
+  setup.board = board;
+  setup.tasks = tasks_;
+  setup.period = autonomy::kTickPeriod;
+  setup.runner = &runner;
+  setup.observer = observer;
+  return executive_.start(setup);
+}
+
+std::vector<MemoryRow> memory_table() {
+  std::vector<MemoryRow> rows{
+      {"runtime", sizeof(runtime::Executive)},
+      {"mapping", sizeof(autonomy::MapTask)},
+      {"estimation", sizeof(estimation::Estimator) + sizeof(autonomy::PoseHistory)},
+      {"control", sizeof(control::Locomotion) + sizeof(control::StandUp)},
+      {"actuation", sizeof(actuation::JointBus)},
+      {"mission", sizeof(autonomy::Mission)},
+      {"configuration", sizeof(robot::RobotModel) + sizeof(autonomy::AutonomyConfig)},
+  };
+  std::size_t sum = 0;
+  for (const MemoryRow& row : rows) sum += row.bytes;
+  rows.push_back({"other", sizeof(Stack) - sum});
+  rows.push_back({"total", sizeof(Stack)});
+  return rows;
+}
+
+}  // namespace surefoot::apps

@@ -1,0 +1,81 @@
+#include "apps/common/summary.h"
+
+#include <fmt/format.h>
+
+#include "apps/common/version.h"
+
+namespace surefoot::apps {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json task_json(const runtime::TaskReport& task) {
+  return {{"name", task.name},         {"period_us", task.period_us}, {"budget_us", task.budget_us},
+          {"count", task.count},       {"p50_us", task.p50_us},       {"p99_us", task.p99_us},
+          {"max_us", task.max_us},     {"overruns", task.overruns},   {"skipped", task.skipped},
+          {"late_publishes", task.late_publishes}};
+}
+
+Json counters_json(const RunFacts& facts) {
+  return {{"late_ticks", facts.counters.late_ticks},
+          {"can_dropped", facts.counters.can_dropped},
+          {"imu_dropped", facts.counters.imu_dropped},
+          {"depth_invalid", facts.counters.depth_invalid},
+          {"sends_refused", facts.counters.sends_refused},
+          {"records_refused", facts.counters.records_refused},
+          {"samples_dropped", facts.samples_dropped}};
+}
+
+}  // namespace
+
+std::string hex16(std::uint64_t value) { return fmt::format("{:016x}", value); }
+
+Json summary_json(const RunFacts& facts) {
+  const RunMeasures& m = facts.measures;
+  const double factor = facts.wall_time_s > 0 ? facts.sim_time_s / facts.wall_time_s : 0;
+  Json json;
+  json["schema"] = 1;
+  json["robot"] = facts.request.robot;
+  json["world"] = facts.request.world;
+  json["mission"] = facts.request.mission;
+  json["hal"] = facts.request.hal;
+  json["seed"] = facts.request.seed;
+  json["set"] = facts.request.sets;
+  json["config_hash"] = hex16(facts.config_hash);
+  json["version"] = version_text();
+  json["outcome"] = to_string(facts.verdict.outcome);
+  json["reason"] = facts.verdict.reason;
+  json["sim_time_s"] = facts.sim_time_s;
+  json["wall_time_s"] = facts.wall_time_s;
+  json["real_time_factor"] = factor;
+  json["start_to_goal_m"] = m.start_to_goal_m;
+  json["path_length_m"] = m.path_length_m;
+  json["walk_time_s"] = m.walk_s;
+  json["mean_speed_m_s"] = m.mean_speed_m_s;
+  json["collisions"] = m.collisions;
+  json["falls"] = facts.falls;
+  json["foot_slips"] = m.foot_slips;
+  json["terrain"] = {{"max_step_m", facts.terrain.max_step_m},
+                     {"rms_m", facts.terrain.rms_m},
+                     {"max_height_m", facts.terrain.max_height_m},
+                     {"cover", facts.terrain.cover},
+                     {"boxes", facts.terrain.boxes},
+                     {"bridged_cells", facts.terrain.bridged_cells},
+                     {"tiles", facts.terrain.tiles}};
+  json["estimate"] = {{"end_error_m", m.estimate.end_error_m},
+                      {"drift_percent", m.estimate.drift_percent},
+                      {"rms_error_m", m.estimate.rms_error_m}};
+  json["map"] = {{"rmse_m", facts.map.rmse_m}, {"known_fraction", facts.map.known_fraction}};
+  json["memory"] = {{"static_bytes", facts.static_bytes},
+                    {"heap_calls_after_start", facts.heap_calls},
+                    {"page_faults_after_start", facts.page_faults}};
+  json["tasks"] = Json::array();
+  for (const runtime::TaskReport& task : facts.tasks) json["tasks"].push_back(task_json(task));
+  json["counters"] = counters_json(facts);
+  json["ticks"] = facts.ticks;
+  json["hash"] = hex16(facts.hash);
+  return json;
+}
+
+}  // namespace surefoot::apps

@@ -1,0 +1,42 @@
+// summary.json, schema 1 (docs/running.md).
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/common/config_root.h"
+#include "apps/common/perceived_map.h"
+#include "apps/common/referee.h"
+#include "apps/common/run_measures.h"
+#include "core/runtime/executive.h"
+#include "core/runtime/statistics.h"
+#include "sim_hal/simulator.h"
+
+namespace surefoot::apps {
+
+struct RunFacts {
+  RunRequest request;
+  std::uint64_t config_hash = 0;
+  Verdict verdict;
+  int falls = 0;
+  double sim_time_s = 0;
+  double wall_time_s = 0;
+  RunMeasures measures;
+  sim::TerrainFigures terrain;
+  MapError map;
+  std::uint64_t static_bytes = 0;
+  std::uint64_t heap_calls = 0;
+  std::uint64_t page_faults = 0;
+  std::vector<runtime::TaskReport> tasks;
+  std::uint64_t ticks = 0;
+  std::uint64_t hash = 0;
+  std::uint64_t samples_dropped = 0;
+  runtime::ExecutiveCounters counters;
+};
+
+std::string hex16(std::uint64_t value);
+nlohmann::ordered_json summary_json(const RunFacts& facts);
+
+}  // namespace surefoot::apps
