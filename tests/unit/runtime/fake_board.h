@@ -131,11 +131,13 @@ class FakeRecord final : public hal::RecordSink {
   };
   std::vector<Message> messages;
   bool refuse = false;
+  hal::RecordSink* forward = nullptr;  // where messages go instead, if anywhere
 
  private:
   Status do_write(hal::RecordChannel channel, TimeNs stamp,
                   std::span<const std::uint8_t> bytes) override {
     if (refuse) return Status::kExhausted;
+    if (forward != nullptr) return forward->write(channel, stamp, bytes);
     messages.push_back({channel, stamp, {bytes.begin(), bytes.end()}});
     return Status::kOk;
   }
