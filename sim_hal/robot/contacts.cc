@@ -109,6 +109,22 @@ void Contacts::make_terrain(const Terrain& terrain) {
   dRFromAxisAndAngle(r, 1, 0, 0, std::acos(-1.0) / 2);
   dGeomSetRotation(field_, r);
   dGeomSetPosition(field_, grid.x0_m + width / 2, grid.y0_m + depth / 2, 0);
+  reserve_field(*low, *high);
+}
+
+// ODE's height field grows its work buffers with the largest shape it has met: show it one that is
+// larger than any of the robot's and deep in the ground, so that no step allocates.
+void Contacts::reserve_field(double low_m, double high_m) {
+  dReal trunk[3];
+  dGeomBoxGetLengths(geoms_[kTrunk], trunk);
+  const double side = std::sqrt(trunk[0] * trunk[0] + trunk[1] * trunk[1] + trunk[2] * trunk[2]) +
+                      4 * grid_.cell_m;
+  const dGeomID probe = dCreateBox(nullptr, side, side, high_m - low_m + 0.2);
+  dGeomSetPosition(probe, 0.5 * (grid_.x0_m + grid_.end_x_m()), 0.5 * (grid_.y0_m + grid_.end_y_m()),
+                   0.5 * (low_m + high_m));
+  std::array<dContactGeom, kMaxPerPair> found;
+  dCollide(probe, field_, kMaxPerPair, found.data(), sizeof(dContactGeom));
+  dGeomDestroy(probe);
 }
 
 void Contacts::collide() {

@@ -10,7 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <vector>
 
 #include "core/math/linear.h"
 #include "sim_hal/robot/articulation.h"
@@ -62,6 +62,7 @@ class Contacts {
 
   void make_shapes(const Articulation& robot);
   void make_terrain(const Terrain& terrain);
+  void reserve_field(double low_m, double high_m);
   void collide_shape(std::size_t shape);
   void collide_pair(std::size_t shape, dGeomID ground);
   void add(std::size_t shape, const dContactGeom& geometry);

@@ -29,7 +29,7 @@ struct WorldSpec {
   static void describe(Self& self, Visitor& visit) {
     visit.choice("generator", self.generator, kGeneratorNames, "how the ground is made");
     visit.real("height_m", self.height_m, {0.0, 0.5}, "clutter, steps: greatest height");
-    visit.real("cover", self.cover, {0.0, 0.8}, "clutter: part of the field under boxes");
+    visit.real("cover", self.cover, {0.0, 0.6}, "clutter: part of the field under boxes");
     visit.real("slope_rad", self.slope_rad, {0.0, 0.45}, "ramps: steepest slope");
     visit.real("scale", self.scale, {0.001, 100.0}, "heightmap: factor on x, y and z");
     visit.real("friction", self.friction, {0.01, 2.0}, "Coulomb coefficient");

@@ -1,0 +1,179 @@
+// Every generator's promises (contract.md "The worlds"), on several seeds.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/base/random.h"
+#include "sim_hal/world/terrain.h"
+#include "sim_hal/world/terrain_index.h"
+#include "tests/unit/sim_hal/sim_fixture.h"
+
+namespace surefoot::sim {
+namespace {
+
+WorldSpec spec(Generator generator, double height_m = 0, double cover = 0, double slope_rad = 0) {
+  WorldSpec world;
+  world.generator = generator;
+  world.height_m = height_m;
+  world.cover = cover;
+  world.slope_rad = slope_rad;
+  return world;
+}
+
+std::array<Vector2, 4> corners(const TerrainBox& box) {
+  std::array<Vector2, 4> result;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double a = (k == 0 || k == 3 ? 1 : -1) * box.half_length_m;
+    const double b = (k < 2 ? 1 : -1) * box.half_width_m;
+    result[k] = Vector2(box.x_m + box.cos_yaw * a - box.sin_yaw * b,
+                        box.y_m + box.sin_yaw * a + box.cos_yaw * b);
+  }
+  return result;
+}
+
+TEST(World, ClutterKeepsItsPromises) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const double height = seed % 2 == 0 ? 0.05 : 0.10;
+    const Terrain terrain = make_terrain(spec(Generator::kClutter, height, 0.5), seed);
+    EXPECT_GE(clutter_cover(terrain), 0.5) << seed;
+    EXPECT_LE(clutter_cover(terrain), 0.535) << seed;  // one box more at most
+    double tallest = 0;
+    for (const TerrainBox& box : terrain.boxes) {
+      EXPECT_GE(box.half_length_m, 0.04);
+      EXPECT_LE(box.half_length_m, 0.15);
+      EXPECT_GE(box.half_width_m, 0.04);
+      EXPECT_LE(box.half_width_m, 0.15);
+      EXPECT_GE(box.top_m - box.bottom_m, 0.3 * height);
+      EXPECT_LE(box.top_m, height);
+      tallest = std::max(tallest, box.top_m);
+      for (const Vector2& corner : corners(box)) {
+        EXPECT_GE(corner.x(), kFieldBegin_m - 1e-9);
+        EXPECT_LE(corner.x(), kFieldBegin_m + kFieldLength_m + 1e-9);
+        EXPECT_LE(std::fabs(corner.y()), kLaneWidth_m / 2 + 1e-9);
+      }
+    }
+    EXPECT_GT(tallest, 0.85 * height);
+  }
+}
+
+TEST(World, ClutterHeightsAreUniform) {
+  double sum = 0;
+  double squares = 0;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    for (const TerrainBox& box : make_terrain(spec(Generator::kClutter, 0.1, 0.4), seed).boxes) {
+      sum += box.top_m - box.bottom_m;
+      squares += (box.top_m - box.bottom_m) * (box.top_m - box.bottom_m);
+      ++count;
+    }
+  }
+  const double mean = sum / count;
+  EXPECT_NEAR(mean, 0.065, 0.002);
+  EXPECT_NEAR(std::sqrt(squares / count - mean * mean), 0.07 / std::sqrt(12.0), 0.0015);
+}
+
+TEST(World, ClutterStacksOnlyBelowItsHeight) {
+  // A cover out of reach without overlap: boxes stand on boxes, tops still at most H.
+  const Terrain terrain = make_terrain(spec(Generator::kClutter, 0.1, 0.6), 3);
+  EXPECT_GE(clutter_cover(terrain), 0.6);
+  int stacked = 0;
+  for (const TerrainBox& box : terrain.boxes) {
+    EXPECT_LE(box.top_m, 0.1);
+    stacked += box.bottom_m > 0 ? 1 : 0;
+  }
+  EXPECT_GT(stacked, 0);
+}
+
+TEST(World, ImpossibleClutterIsRefused) {
+  EXPECT_THROW(make_terrain(spec(Generator::kClutter, 0.0, 0.5), 1), SimulatorError);
+  EXPECT_THROW(make_terrain(spec(Generator::kClutter, 0.05, 0.999), 1), SimulatorError);
+}
+
+TEST(World, StepsCrossTheLane) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Terrain terrain = make_terrain(spec(Generator::kSteps, 0.08), seed);
+    EXPECT_GE(terrain.boxes.size(), 3u);
+    for (const TerrainBox& box : terrain.boxes) {
+      EXPECT_GE(2 * box.half_length_m, 0.25 - 1e-9);
+      EXPECT_LE(2 * box.half_length_m, 0.60 + 1e-9);
+      EXPECT_LE(box.top_m, 0.08);
+      EXPECT_GE(box.half_width_m, kLaneWidth_m / 2);
+      EXPECT_GE(box.x_m - box.half_length_m, kFieldBegin_m - 1e-9);
+      EXPECT_LE(box.x_m + box.half_length_m, kFieldBegin_m + kFieldLength_m + 1e-9);
+    }
+  }
+}
+
+TEST(World, RampsAreContinuousAndNoSteeperThanStated) {
+  double steepest_side = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Terrain terrain = make_terrain(spec(Generator::kRamps, 0, 0, 0.26), seed);
+    constexpr double kStep = 0.005;
+    for (double x = 0; x < 3.0; x += kStep) {
+      for (double y = -0.59; y < 0.59; y += 0.07) {
+        const double z = terrain.height_m(x, y);
+        const double dx = (terrain.height_m(x + kStep, y) - z) / kStep;
+        const double dy = (terrain.height_m(x, y + kStep) - z) / kStep;
+        EXPECT_LE(std::hypot(dx, dy), std::tan(0.26) * 1.03) << x << " " << y;
+        steepest_side = std::max(steepest_side, std::fabs(dy));
+      }
+    }
+    EXPECT_EQ(terrain.height_m(0.39, 0.3), 0);
+    EXPECT_NEAR(terrain.height_m(2.71, -0.3), 0, 1e-12);
+  }
+  EXPECT_GT(steepest_side, 0.15);
+}
+
+TEST(World, StartAndGoalAreClearInEveryWorld) {
+  for (const WorldSpec& world :
+       {spec(Generator::kFlat), spec(Generator::kSteps, 0.08), spec(Generator::kRamps, 0, 0, 0.26),
+        spec(Generator::kClutter, 0.1, 0.5)}) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      const Terrain terrain = make_terrain(world, seed);
+      for (double y = -0.6; y <= 0.6; y += 0.05) {
+        for (double x = -0.6; x < 0.39; x += 0.05) EXPECT_EQ(terrain.height_m(x, y), 0);
+        EXPECT_NEAR(terrain.height_m(kGoalX_m - 0.25, y), 0, 1e-12);
+      }
+    }
+  }
+}
+
+TEST(World, SeedsDiffer) {
+  const Terrain a = make_terrain(spec(Generator::kClutter, 0.05, 0.5), 1);
+  const Terrain b = make_terrain(spec(Generator::kClutter, 0.05, 0.5), 2);
+  EXPECT_NE(a.boxes[0].x_m, b.boxes[0].x_m);
+}
+
+TEST(World, IndexKnowsTheTerrainsHeights) {
+  for (const WorldSpec& world : {spec(Generator::kClutter, 0.1, 0.5), spec(Generator::kSteps, 0.08),
+                                 spec(Generator::kRamps, 0, 0, 0.26)}) {
+    const Terrain terrain = make_terrain(world, 6);
+    const TerrainIndex index(terrain);
+    Random random(1);
+    for (int i = 0; i < 5000; ++i) {
+      const double x = random.uniform(-1.0, 4.0);
+      const double y = random.uniform(-2.0, 2.0);
+      const double height = terrain.height_m(x, y);
+      ASSERT_EQ(index.height_m(x, y), height) << x << " " << y;
+      ASSERT_GE(index.max_height_m(x - 0.02, y - 0.02, x + 0.02, y + 0.02), height);
+    }
+  }
+}
+
+TEST(World, FiguresDescribeTheLane) {
+  Rig flat;
+  EXPECT_EQ(flat.simulator->terrain_figures().max_step_m, 0);
+  EXPECT_EQ(flat.simulator->terrain_figures().rms_m, 0);
+  Rig clutter(spec(Generator::kClutter, 0.05, 0.5), {}, 4);
+  const TerrainFigures figures = clutter.simulator->terrain_figures();
+  EXPECT_LE(figures.max_step_m, 0.05);
+  EXPECT_GT(figures.max_step_m, 0.045);
+  EXPECT_GT(figures.rms_m, 0.012);
+  EXPECT_LT(figures.rms_m, 0.025);
+  EXPECT_GE(figures.cover, 0.5);
+  EXPECT_GT(figures.boxes, 30u);
+}
+
+}  // namespace
+}  // namespace surefoot::sim
