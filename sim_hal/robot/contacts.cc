@@ -109,22 +109,37 @@ void Contacts::make_terrain(const Terrain& terrain) {
   dRFromAxisAndAngle(r, 1, 0, 0, std::acos(-1.0) / 2);
   dGeomSetRotation(field_, r);
   dGeomSetPosition(field_, grid.x0_m + width / 2, grid.y0_m + depth / 2, 0);
-  reserve_field(*low, *high);
+  reserve_field();
 }
 
-// ODE's height field grows its work buffers with the largest shape it has met: show it one that is
-// larger than any of the robot's and deep in the ground, so that no step allocates.
-void Contacts::reserve_field(double low_m, double high_m) {
+// ODE's height field grows its work buffers with the largest shape it has met and with the number of
+// different planes under it: show it a large box on ground without two equal planes, once, so that no
+// step allocates. Beyond 32 cells a side the buffers would take over 20 MB: a trunk that falls on a
+// finer map may still make ODE allocate.
+void Contacts::reserve_field() {
+  constexpr int kMaxCells = 32;
   dReal trunk[3];
   dGeomBoxGetLengths(geoms_[kTrunk], trunk);
-  const double side = std::sqrt(trunk[0] * trunk[0] + trunk[1] * trunk[1] + trunk[2] * trunk[2]) +
-                      4 * grid_.cell_m;
-  const dGeomID probe = dCreateBox(nullptr, side, side, high_m - low_m + 0.2);
-  dGeomSetPosition(probe, 0.5 * (grid_.x0_m + grid_.end_x_m()), 0.5 * (grid_.y0_m + grid_.end_y_m()),
-                   0.5 * (low_m + high_m));
+  const double diagonal =
+      std::sqrt(trunk[0] * trunk[0] + trunk[1] * trunk[1] + trunk[2] * trunk[2]);
+  const int cells = std::min(kMaxCells, static_cast<int>(std::ceil(diagonal / grid_.cell_m)) + 4);
+  std::vector<double> rough;
+  for (int i = 0; i < (cells + 1) * (cells + 1); ++i) {
+    rough.push_back(0.1 * grid_.cell_m * ((i * 7919) % 1009) / 1009.0);
+  }
+  const double side = cells * grid_.cell_m;
+  const dHeightfieldDataID data = dGeomHeightfieldDataCreate();
+  dGeomHeightfieldDataBuildDouble(data, rough.data(), 1, side, side, cells + 1, cells + 1, 1.0, 0.0,
+                                  1.0, 0);
+  dGeomHeightfieldSetHeightfieldData(field_, data);
+  const dGeomID probe = dCreateBox(nullptr, 0.999 * side, 0.999 * side, side);
+  const dReal* centre = dGeomGetPosition(field_);
+  dGeomSetPosition(probe, centre[0], centre[1], 0);
   std::array<dContactGeom, kMaxPerPair> found;
   dCollide(probe, field_, kMaxPerPair, found.data(), sizeof(dContactGeom));
   dGeomDestroy(probe);
+  dGeomHeightfieldSetHeightfieldData(field_, field_data_);
+  dGeomHeightfieldDataDestroy(data);
 }
 
 void Contacts::collide() {

@@ -62,7 +62,7 @@ class Contacts {
 
   void make_shapes(const Articulation& robot);
   void make_terrain(const Terrain& terrain);
-  void reserve_field(double low_m, double high_m);
+  void reserve_field();
   void collide_shape(std::size_t shape);
   void collide_pair(std::size_t shape, dGeomID ground);
   void add(std::size_t shape, const dContactGeom& geometry);

@@ -26,8 +26,8 @@ robot::RobotModel without_friction() {
   for (robot::Actuator& actuator : model.actuators) {
     actuator.dry_friction_Nm = 0;
     actuator.viscous_friction_Nm_s = 0;
-    actuator.min_rad = -6;
-    actuator.max_rad = 6;
+    actuator.min_rad = -60;
+    actuator.max_rad = 60;
   }
   return model;
 }
