@@ -94,8 +94,7 @@ void WindowClassifier::bridge() {
       if (count < kNeighbours) continue;
       const float median = 0.5F * (heights[3] + heights[4]);
       // A line of sight passed here: the ground cannot stand above it.
-      cell.height_m =
-          cell.state == CellState::kBounded ? std::min(median, cell.height_m) : median;
+      cell.height_m = cell.state == CellState::kBounded ? std::min(median, cell.height_m) : median;
       cell.bridged = true;
     }
   }
@@ -134,11 +133,10 @@ FootholdClass WindowClassifier::classify(std::int32_t x, std::int32_t y,
 std::uint8_t WindowClassifier::margin(std::int32_t x, std::int32_t y) const {
   for (std::int32_t ring = 1; ring < kMaxMargin_cells; ++ring) {
     for (std::int32_t i = -ring; i <= ring; ++i) {
-      const bool good =
-          cells_[at(x + i, y - ring)].foothold == FootholdClass::kSteppable &&
-          cells_[at(x + i, y + ring)].foothold == FootholdClass::kSteppable &&
-          cells_[at(x - ring, y + i)].foothold == FootholdClass::kSteppable &&
-          cells_[at(x + ring, y + i)].foothold == FootholdClass::kSteppable;
+      const bool good = cells_[at(x + i, y - ring)].foothold == FootholdClass::kSteppable &&
+                        cells_[at(x + i, y + ring)].foothold == FootholdClass::kSteppable &&
+                        cells_[at(x - ring, y + i)].foothold == FootholdClass::kSteppable &&
+                        cells_[at(x + ring, y + i)].foothold == FootholdClass::kSteppable;
       if (!good) return static_cast<std::uint8_t>(ring);
     }
   }

@@ -13,8 +13,8 @@ namespace surefoot::mapping {
 
 inline constexpr std::int32_t kMaxFootholdRadius_cells = 5;
 
-// Holds the window plus a rim, so that a class never depends on where the window ends. The rim covers
-// the margin, the patch and one cell for bridging.
+// Holds the window plus a rim, so that a class never depends on where the window ends. The rim
+// covers the margin, the patch and one cell for bridging.
 class WindowClassifier {
  public:
   // Fills out.first and out.cells from `map`; nothing else of `out`.

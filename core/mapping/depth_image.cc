@@ -6,8 +6,8 @@ namespace surefoot::mapping {
 namespace {
 
 // A plane is linear in 1 / z over the image, at any inclination, and disparity noise is constant in
-// 1 / z. So a pixel belongs to a surface where its 1 / z equals a neighbour's or continues the line of
-// two neighbours on one side; a mixed pixel, between two surfaces, does neither.
+// 1 / z. So a pixel belongs to a surface where its 1 / z equals a neighbour's or continues the line
+// of two neighbours on one side; a mixed pixel, between two surfaces, does neither.
 class SurfaceTest {
  public:
   SurfaceTest(const hal::DepthFrame& frame, const MappingConfig& config,
@@ -23,8 +23,8 @@ class SurfaceTest {
 
   bool mixed(std::int32_t u, std::int32_t v, float z) const {
     const float tolerance = gain_ * (inverse_sigma_ + floor_ / (z * z));
-    const bool horizontal = width_ < 3 || continues(u, v, -1, 0, z, tolerance) ||
-                            continues(u, v, 1, 0, z, tolerance);
+    const bool horizontal =
+        width_ < 3 || continues(u, v, -1, 0, z, tolerance) || continues(u, v, 1, 0, z, tolerance);
     if (!horizontal) return true;
     return !(height_ < 3 || continues(u, v, 0, -1, z, tolerance) ||
              continues(u, v, 0, 1, z, tolerance));

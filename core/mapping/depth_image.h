@@ -1,5 +1,5 @@
-// A depth frame made ready: thinned to the pixel bound, in metres, with two answers per pixel that need
-// its neighbours: is it a mixed pixel, and how near is the nearest surface around it.
+// A depth frame made ready: thinned to the pixel bound, in metres, with two answers per pixel that
+// need its neighbours: is it a mixed pixel, and how near is the nearest surface around it.
 #pragma once
 
 #include <array>
@@ -22,9 +22,9 @@ struct DepthImage {
   double fy = 0;
   double cx = 0;
   double cy = 0;
-  float farthest_m = 0;     // largest of nearest_m
-  std::array<float, kMaxPixels> z_m{};         // 0: no measurement
-  std::array<float, kMaxPixels> nearest_m{};   // least z of the 3 x 3; 0: not all nine measured
+  float farthest_m = 0;                          // largest of nearest_m
+  std::array<float, kMaxPixels> z_m{};           // 0: no measurement
+  std::array<float, kMaxPixels> nearest_m{};     // least z of the 3 x 3; 0: not all nine measured
   std::array<std::uint8_t, kMaxPixels> mixed{};  // 1: between two surfaces or alone
 
   std::size_t at(std::int32_t u, std::int32_t v) const {

@@ -64,7 +64,8 @@ Status check(const MapWindow& window, const FootholdQuery& query) {
   return in_range ? Status::kOk : Status::kOutOfRange;
 }
 
-// Mean of the known cells of the 3 x 3: less noise than one cell, and over a steppable cell no step.
+// Mean of the known cells of the 3 x 3: less noise than one cell, and over a steppable cell no
+// step.
 double ground_height(const MapWindow& window, CellIndex centre) {
   double sum = 0;
   int count = 0;
@@ -97,7 +98,8 @@ Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& que
   for (std::size_t i = 0; i < kOffsets; ++i) {
     const Offset offset = kSpiral[i];
     // No cell from here on is nearer than its offset less half a cell's diagonal.
-    const double ring = math::sqrt(static_cast<double>(offset.dx * offset.dx + offset.dy * offset.dy));
+    const double ring =
+        math::sqrt(static_cast<double>(offset.dx * offset.dx + offset.dy * offset.dy));
     const double least = (ring - 0.7072) * size;
     if (least > query.max_radius_m || (found && least > best_cost)) break;
     const CellIndex index = nominal + CellIndex{offset.dx, offset.dy};
@@ -105,7 +107,8 @@ Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& que
     if (cell == nullptr || cell->foothold != FootholdClass::kSteppable) continue;
     const double x = i == 0 ? query.x_O_m : cell_centre(index.ix, size);
     const double y = i == 0 ? query.y_O_m : cell_centre(index.iy, size);
-    const double distance = math::sqrt(math::square(x - query.x_O_m) + math::square(y - query.y_O_m));
+    const double distance =
+        math::sqrt(math::square(x - query.x_O_m) + math::square(y - query.y_O_m));
     const double cost = distance + query.margin_weight_m * (kMaxMargin_cells - cell->margin_cells);
     if (distance > query.max_radius_m || (found && cost >= best_cost)) continue;
     const double z = ground_height(window, index);

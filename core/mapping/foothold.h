@@ -12,14 +12,14 @@ namespace surefoot::mapping {
 inline constexpr std::int32_t kMaxSearchRadius_cells = 20;
 
 struct FootholdQuery {
-  double x_O_m = 0;          // nominal foothold
+  double x_O_m = 0;  // nominal foothold
   double y_O_m = 0;
-  double max_radius_m = 0;   // from the nominal point to a cell's centre
+  double max_radius_m = 0;  // from the nominal point to a cell's centre
   // Reach: footholds farther than reach_m from this point (the hip, seen from above) are no use.
   double reach_x_O_m = 0;
   double reach_y_O_m = 0;
-  double reach_m = 0;        // 0: no such limit
-  double min_z_O_m = -1e3;   // heights the leg can reach
+  double reach_m = 0;       // 0: no such limit
+  double min_z_O_m = -1e3;  // heights the leg can reach
   double max_z_O_m = 1e3;
   // Metres of detour one more cell of distance from the nearest bad cell is worth (0: the nearest
   // cell wins).
@@ -29,7 +29,7 @@ struct FootholdQuery {
 struct Foothold {
   double x_O_m = 0;
   double y_O_m = 0;
-  double z_O_m = 0;    // the ground: mean of the known cells of the 3 x 3 around it
+  double z_O_m = 0;  // the ground: mean of the known cells of the 3 x 3 around it
   CellIndex cell;
   bool moved = false;  // false: the nominal point itself
   double distance_m = 0;
@@ -38,11 +38,12 @@ struct Foothold {
 // The nominal point itself where its cell is steppable, in reach and margin_weight_m is 0; else the
 // centre of the steppable cell of smallest cost
 //   distance(nominal, centre) + margin_weight_m * (kMaxMargin_cells - margin_cells),
-// ties by (rings of distance, iy, ix). With a margin weight the nominal point competes with distance
-// zero. Cost: at most all cells within kMaxSearchRadius_cells (1257), fewer when one is found early.
-// kNotFound: none within reach. kInvalid: not finite or a negative length. kOutOfRange: max_radius_m
-// above kMaxSearchRadius_cells cells or the nominal point is unmappable. kUnavailable: window empty.
-// Never returns a cell that is not steppable or lies outside the window.
+// ties by (rings of distance, iy, ix). With a margin weight the nominal point competes with
+// distance zero. Cost: at most all cells within kMaxSearchRadius_cells (1257), fewer when one is
+// found early. kNotFound: none within reach. kInvalid: not finite or a negative length.
+// kOutOfRange: max_radius_m above kMaxSearchRadius_cells cells or the nominal point is unmappable.
+// kUnavailable: window empty. Never returns a cell that is not steppable or lies outside the
+// window.
 Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& query);
 
 }  // namespace surefoot::mapping

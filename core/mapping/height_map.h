@@ -1,6 +1,6 @@
-// A square height map that follows the robot: a ring buffer in both directions, so that a move costs
-// only the strips that scroll in. Cells are addressed by their index in the odometry frame O and by
-// nothing else; where a cell lies in memory is invisible.
+// A square height map that follows the robot: a ring buffer in both directions, so that a move
+// costs only the strips that scroll in. Cells are addressed by their index in the odometry frame O
+// and by nothing else; where a cell lies in memory is invisible.
 #pragma once
 
 #include <array>
@@ -16,7 +16,8 @@ namespace surefoot::mapping {
 // Positions beyond this are refused (Status::kOutOfRange): a cell index then always fits 32 bits.
 inline constexpr double kMaxCoordinate_m = 1e5;
 
-// Cell (ix, iy) covers ix * size <= x < (ix + 1) * size, products rounded to double, and y likewise.
+// Cell (ix, iy) covers ix * size <= x < (ix + 1) * size, products rounded to double, and y
+// likewise.
 struct CellIndex {
   std::int32_t ix = 0;
   std::int32_t iy = 0;
@@ -53,10 +54,10 @@ enum class CellState : std::uint8_t {
 // 16 bytes. Fields without a meaning in the current state are zero, so that equal cells have equal
 // bits.
 struct MapCell {
-  float height_m = 0;      // measured, assumed: height in O. bounded: the ceiling
-  float variance_m2 = 0;   // measured, assumed
-  std::uint32_t stamp_ms = 0;      // of the last change by evidence; 0: never
-  std::int16_t candidate_mm = 0;   // measured: where outliers agree the surface is, from height_m
+  float height_m = 0;             // measured, assumed: height in O. bounded: the ceiling
+  float variance_m2 = 0;          // measured, assumed
+  std::uint32_t stamp_ms = 0;     // of the last change by evidence; 0: never
+  std::int16_t candidate_mm = 0;  // measured: where outliers agree the surface is, from height_m
   CellState state = CellState::kUnknown;
   std::uint8_t confirmations : 4 = 0;  // scans that agreed on the candidate
   std::uint8_t misses : 4 = 0;         // frames in a row that saw through the cell
@@ -88,8 +89,8 @@ class HeightMap {
     return cells_[slot(i)];
   }
 
-  // The cells of row iy between ix_begin and ix_end (both inside the map) lie in at most two runs of
-  // memory; calls visit(ix, cell&) in ascending ix.
+  // The cells of row iy between ix_begin and ix_end (both inside the map) lie in at most two runs
+  // of memory; calls visit(ix, cell&) in ascending ix.
   template <class Visit>
   void for_row(std::int32_t iy, std::int32_t ix_begin, std::int32_t ix_end, Visit&& visit) {
     if (ix_begin >= ix_end) return;
@@ -131,8 +132,8 @@ class HeightMap {
     first_ = corner(centre);
   }
 
-  // Moves the map so that it is centred at `centre`. Cells that stay inside keep every bit; cells that
-  // come in are unknown. Cost: proportional to the cells that come in, at most kSide * kSide.
+  // Moves the map so that it is centred at `centre`. Cells that stay inside keep every bit; cells
+  // that come in are unknown. Cost: proportional to the cells that come in, at most kSide * kSide.
   void recentre(CellIndex centre) {
     const CellIndex target = corner(centre);
     const std::int64_t dx = std::int64_t{target.ix} - first_.ix;

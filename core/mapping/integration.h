@@ -20,13 +20,13 @@ using BodyPose = geometry::Pose<geometry::Odometry, geometry::Body>;
 
 // What became of a frame's pixels and of the cells it saw.
 struct IntegrationReport {
-  std::uint32_t pixels = 0;          // looked at
-  std::uint32_t no_depth = 0;        // 0 or outside the sensor's range
-  std::uint32_t mixed = 0;           // dropped by the depth-edge filter
-  std::uint32_t self = 0;            // on the robot itself
+  std::uint32_t pixels = 0;    // looked at
+  std::uint32_t no_depth = 0;  // 0 or outside the sensor's range
+  std::uint32_t mixed = 0;     // dropped by the depth-edge filter
+  std::uint32_t self = 0;      // on the robot itself
   std::uint32_t too_high = 0;
-  std::uint32_t outside = 0;         // beyond the map
-  std::uint32_t points = 0;          // used
+  std::uint32_t outside = 0;  // beyond the map
+  std::uint32_t points = 0;   // used
   std::uint32_t cells_hit = 0;
   std::uint32_t cells_new = 0;
   std::uint32_t cells_fused = 0;
@@ -34,7 +34,7 @@ struct IntegrationReport {
   std::uint32_t cells_replaced = 0;  // outliers confirmed: the surface moved
   std::uint32_t cells_doubted = 0;   // seen through, not yet cleared
   std::uint32_t cells_cleared = 0;
-  std::uint32_t ceilings = 0;        // bounds set or tightened
+  std::uint32_t ceilings = 0;  // bounds set or tightened
 };
 
 }  // namespace surefoot::mapping

@@ -18,15 +18,17 @@ class CellView {
 
   enum class Verdict { kNone, kConsistent, kSeenThrough };
 
-  // offset_x, offset_y: the cell's centre from the camera, in O. Near the camera a cell is wider than
-  // three pixels, and the surface may fill but a corner of it: all corners must be seen through.
+  // offset_x, offset_y: the cell's centre from the camera, in O. Near the camera a cell is wider
+  // than three pixels, and the surface may fill but a corner of it: all corners must be seen
+  // through.
   Verdict look_at_cell(double offset_x, double offset_y, const MapCell& cell) const {
     const Verdict verdict = look(offset_x, offset_y, cell);
     if (verdict != Verdict::kSeenThrough) return verdict;
     const double half = 0.5 * sight_.config.cell_size_m;
     for (const double dx : {-half, half}) {
       for (const double dy : {-half, half}) {
-        if (look(offset_x + dx, offset_y + dy, cell) != Verdict::kSeenThrough) return Verdict::kNone;
+        if (look(offset_x + dx, offset_y + dy, cell) != Verdict::kSeenThrough)
+          return Verdict::kNone;
       }
     }
     return Verdict::kSeenThrough;
@@ -36,8 +38,7 @@ class CellView {
   // One point at the cell's height.
   Verdict look(double offset_x, double offset_y, const MapCell& cell) const {
     const double rise = static_cast<double>(cell.height_m) - origin_.z();
-    const double z =
-        R_OC_(0, 2) * offset_x + R_OC_(1, 2) * offset_y + R_OC_(2, 2) * rise;
+    const double z = R_OC_(0, 2) * offset_x + R_OC_(1, 2) * offset_y + R_OC_(2, 2) * rise;
     if (z < sight_.sensor.min_range_m) return Verdict::kNone;
     const double x = R_OC_(0, 0) * offset_x + R_OC_(1, 0) * offset_y + R_OC_(2, 0) * rise;
     const double y = R_OC_(0, 1) * offset_x + R_OC_(1, 1) * offset_y + R_OC_(2, 1) * rise;
@@ -52,7 +53,7 @@ class CellView {
     if (!(seen > 0) || gap < -least) return Verdict::kNone;  // no answer, or hidden
     if (gap <= least) return Verdict::kConsistent;
     return gap > margin(seen, offset_x, offset_y, rise, cell) ? Verdict::kSeenThrough
-                                                             : Verdict::kConsistent;
+                                                              : Verdict::kConsistent;
   }
 
   // How far behind the cell the ray must end: noise of the depth, and what an error of the cell's
@@ -65,7 +66,8 @@ class CellView {
     const double height_sigma = math::sqrt(static_cast<double>(cell.variance_m2) +
                                            math::square(config.attitude_noise_rad) * range2);
     const double range = math::sqrt(range2);
-    const double descent = std::max((rise < 0 ? -rise : rise) / std::max(range, 1e-3), kLeastDescent);
+    const double descent =
+        std::max((rise < 0 ? -rise : rise) / std::max(range, 1e-3), kLeastDescent);
     return config.clear_margin_m + config.clear_sigma * (depth_sigma + config.depth_noise_floor_m) +
            (config.clear_height_margin_m + config.clear_sigma * height_sigma) / descent;
   }
@@ -146,7 +148,8 @@ class CeilingRay {
     const double sigma = depth * depth * sight_.sensor.inverse_depth_sigma_per_m;
     const double end = depth - sight_.config.clear_sigma * sigma - size_;
     // The sample is one height of the cell's stretch of the ray; its highest is at most this above.
-    const double slack = size_ * 0.7072 * (direction.z() < 0 ? -direction.z() : direction.z()) / horizontal;
+    const double slack =
+        size_ * 0.7072 * (direction.z() < 0 ? -direction.z() : direction.z()) / horizontal;
     const Vector3& origin = sight_.X_OC.origin.m;
     // In cells, counted from the camera's cell and shifted so that truncation rounds down.
     const double inverse = 1.0 / size_;

@@ -88,8 +88,8 @@ Result<double> MapWindow::max_height_along(double ax_O_m, double ay_O_m, double 
       const double height = static_cast<double>(cell.height_m);
       if (found && height <= highest) continue;
       const double distance2 =
-          distance2_to_segment(cell_centre(index.ix, cell_size_m), cell_centre(index.iy, cell_size_m),
-                               ax_O_m, ay_O_m, bx_O_m, by_O_m);
+          distance2_to_segment(cell_centre(index.ix, cell_size_m),
+                               cell_centre(index.iy, cell_size_m), ax_O_m, ay_O_m, bx_O_m, by_O_m);
       if (distance2 > radius_m * radius_m) continue;
       highest = height;
       found = true;

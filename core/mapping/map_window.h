@@ -1,5 +1,5 @@
-// What control sees of the map: a copy of the 100 x 100 cells around the robot, with its own place and
-// stamp. Plain data; never changes between two publications.
+// What control sees of the map: a copy of the 100 x 100 cells around the robot, with its own place
+// and stamp. Plain data; never changes between two publications.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace surefoot::mapping {
 inline constexpr std::int32_t kWindowSide = 100;
 
 enum class FootholdClass : std::uint8_t {
-  kUnknown = 0,   // too little of the patch under the foot is known
+  kUnknown = 0,  // too little of the patch under the foot is known
   kSteppable,
   kNotSteppable,  // too steep, too rough, or beside an edge
 };
@@ -46,18 +46,18 @@ inline constexpr std::uint8_t kMaxMargin_cells = 3;
 
 // Statistics of the cells with height whose centres lie within a radius.
 struct PatchStatistics {
-  std::uint32_t cells = 0;    // centres within the radius
-  std::uint32_t known = 0;    // of these, with height
-  double min_m = 0;           // heights in O; 0 where known == 0
+  std::uint32_t cells = 0;  // centres within the radius
+  std::uint32_t known = 0;  // of these, with height
+  double min_m = 0;         // heights in O; 0 where known == 0
   double max_m = 0;
   double mean_m = 0;
 };
 
 struct MapWindow {
-  TimeNs stamp;                // of the youngest depth frame in it; 0: none yet
-  std::uint64_t frames = 0;    // depth frames integrated so far
-  double cell_size_m = 0;      // 0: never published; every query answers kUnavailable
-  CellIndex first;             // cell with the smallest indices
+  TimeNs stamp;              // of the youngest depth frame in it; 0: none yet
+  std::uint64_t frames = 0;  // depth frames integrated so far
+  double cell_size_m = 0;    // 0: never published; every query answers kUnavailable
+  CellIndex first;           // cell with the smallest indices
   std::array<WindowCell, static_cast<std::size_t>(kWindowSide) * kWindowSide> cells{};
 
   bool contains(CellIndex i) const;

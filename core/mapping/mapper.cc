@@ -94,8 +94,8 @@ Status Mapper::check(const hal::DepthFrame& frame, const CameraPose& X_OC,
   if (!ok(check_header(frame)) || !ok(validate(self))) return Status::kInvalid;
   if (frame.stamp.ns < 0 || (frames_ > 0 && frame.stamp <= stamp_)) return Status::kInvalid;
   const Vector3& camera = X_OC.origin.m;
-  const bool finite = math::is_finite(camera.x()) && math::is_finite(camera.y()) &&
-                      math::is_finite(camera.z());
+  const bool finite =
+      math::is_finite(camera.x()) && math::is_finite(camera.y()) && math::is_finite(camera.z());
   if (!finite || !is_rotation(X_OC.rotation.matrix)) return Status::kInvalid;
   if (!is_mappable(camera) || !is_mappable(self.X_OB.origin.m)) return Status::kOutOfRange;
   return Status::kOk;
@@ -169,9 +169,8 @@ void Mapper::gather(const CameraPose& X_OC, const SelfModel& self, IntegrationRe
       const double depth_variance =
           math::square(z * z * sensor_.inverse_depth_sigma_per_m) + floor2;
       const double variance = depth_variance * math::square(direction.z()) + 1e-8;
-      const double shared =
-          attitude2 * (offset.x() * offset.x() + offset.y() * offset.y()) +
-          math::square(config_.min_sigma_m);
+      const double shared = attitude2 * (offset.x() * offset.x() + offset.y() * offset.y()) +
+                            math::square(config_.min_sigma_m);
       if (ok(scan_.add(index, p_O_m.z(), variance, shared, config_.gate_sigma))) ++report.points;
     }
   }
@@ -197,8 +196,8 @@ void Mapper::fuse(std::uint32_t now_ms, IntegrationReport& report) {
       continue;
     }
     const double age_s = 1e-3 * static_cast<double>(now_ms - cell.stamp_ms);
-    const double prior = std::min(
-        static_cast<double>(cell.variance_m2) + config_.process_noise_m2_s * age_s, most);
+    const double prior =
+        std::min(static_cast<double>(cell.variance_m2) + config_.process_noise_m2_s * age_s, most);
     const double innovation = height - static_cast<double>(cell.height_m);
     if (innovation * innovation <= gate2 * (prior + variance)) {
       const double gain = prior / (prior + variance);
@@ -215,7 +214,8 @@ void Mapper::fuse(std::uint32_t now_ms, IntegrationReport& report) {
     const bool agrees = cell.confirmations > 0 && agreement * agreement <= 2.0 * gate2 * variance;
     cell.confirmations = static_cast<std::uint8_t>((agrees ? cell.confirmations + 1 : 1) & 0xF);
     cell.candidate_mm = to_mm(innovation);
-    if (cell.confirmations < (innovation > 0 ? config_.confirmations_up : config_.confirmations_down)) {
+    if (cell.confirmations <
+        (innovation > 0 ? config_.confirmations_up : config_.confirmations_down)) {
       ++report.cells_pending;
     } else {
       cell = fresh;

@@ -39,17 +39,17 @@ class Mapper {
   Status configure(const MappingConfig& config, const DepthSensorModel& sensor);
   bool configured() const { return configured_; }
 
-  // Marks the cells of the rectangle that were never measured as assumed and centres the map there if
-  // it is still empty. kUnavailable: not configured. kInvalid: not finite, |slope| > 1, sides
+  // Marks the cells of the rectangle that were never measured as assumed and centres the map there
+  // if it is still empty. kUnavailable: not configured. kInvalid: not finite, |slope| > 1, sides
   // above 5 m. kOutOfRange: unmappable.
   Status assume(const AssumedPad& pad);
 
   // One depth frame, taken from X_OC at frame.stamp. The map follows the body.
-  // kUnavailable: not configured or mapping disabled. kInvalid: header or pose breaks its domain, or
-  // the stamp is not after the last one. kOutOfRange: body or camera unmappable.
-  // kNotFound: no pixel can be used. `report`, when given, is written only on kOk and kNotFound.
-  // Cost: bounded by kMaxPixels points, one look at each cell within kMaxClearRadius_cells of the
-  // camera, and kMaxPixels / ceiling_pixel_stride^2 rays of kMaxCellsPerRay cells.
+  // kUnavailable: not configured or mapping disabled. kInvalid: header or pose breaks its domain,
+  // or the stamp is not after the last one. kOutOfRange: body or camera unmappable. kNotFound: no
+  // pixel can be used. `report`, when given, is written only on kOk and kNotFound. Cost: bounded by
+  // kMaxPixels points, one look at each cell within kMaxClearRadius_cells of the camera, and
+  // kMaxPixels / ceiling_pixel_stride^2 rays of kMaxCellsPerRay cells.
   Status integrate(const hal::DepthFrame& frame, const CameraPose& X_OC, const SelfModel& self,
                    IntegrationReport* report = nullptr);
 

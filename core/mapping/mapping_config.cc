@@ -20,9 +20,7 @@ class RangeCheck {
   bool ok() const { return ok_; }
 
  private:
-  void check(double value, Range range) {
-    ok_ = ok_ && value >= range.low && value <= range.high;
-  }
+  void check(double value, Range range) { ok_ = ok_ && value >= range.low && value <= range.high; }
   bool ok_ = true;
 };
 
@@ -31,8 +29,7 @@ class RangeCheck {
 DepthSensorModel sensor_model(const robot::DepthCameraSpecification& camera) {
   const double focal_px =
       0.5 * camera.native_width_px / math::tan(0.5 * camera.horizontal_view_rad);
-  return {.inverse_depth_sigma_per_m =
-              camera.disparity_noise_px / (focal_px * camera.baseline_m),
+  return {.inverse_depth_sigma_per_m = camera.disparity_noise_px / (focal_px * camera.baseline_m),
           .min_range_m = camera.min_range_m,
           .max_range_m = camera.max_range_m};
 }

@@ -12,12 +12,12 @@ namespace surefoot::mapping {
 
 inline constexpr std::size_t kMaxScanCells = kMaxPixels;
 
-// The highest surface among a frame's points in one cell: points that agree with it (within the gate)
-// are averaged with their inverse variances, lower ones are left out.
+// The highest surface among a frame's points in one cell: points that agree with it (within the
+// gate) are averaged with their inverse variances, lower ones are left out.
 struct ScanCell {
   CellIndex index;
-  double weight = 0;           // sum of 1 / variance
-  double weighted_height = 0;  // sum of height / variance
+  double weight = 0;             // sum of 1 / variance
+  double weighted_height = 0;    // sum of height / variance
   float shared_variance_m2 = 0;  // what averaging cannot reduce (attitude, floor): the largest
 
   double height_m() const { return weighted_height / weight; }

@@ -1,5 +1,5 @@
-// Real depth frames through the mapper of the robot: half of the frames builds the map, the other half
-// is predicted by it.
+// Real depth frames through the mapper of the robot: half of the frames builds the map, the other
+// half is predicted by it.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -29,13 +29,13 @@ constexpr mapping::DepthSensorModel kKinect{
 
 Vector3 back_project(const hal::DepthFrame& frame, int u, int v) {
   const hal::PinholeIntrinsics& k = frame.intrinsics;
-  const double z = 0.001 * frame.depth[static_cast<std::size_t>(v) * k.width_px +
-                                       static_cast<std::size_t>(u)];
+  const double z =
+      0.001 * frame.depth[static_cast<std::size_t>(v) * k.width_px + static_cast<std::size_t>(u)];
   return {(u - k.cx_px) / k.fx_px * z, (v - k.cy_px) / k.fy_px * z, z};
 }
 
-// Surface normal in C from the pixels four away, towards the camera; zero where one is missing or the
-// surface is broken there.
+// Surface normal in C from the pixels four away, towards the camera; zero where one is missing or
+// the surface is broken there.
 Vector3 normal_at(const hal::DepthFrame& frame, int u, int v) {
   constexpr int kStep = 4;
   if (u < kStep || v < kStep || u + kStep >= 640 || v + kStep >= 480) return Vector3::Zero();
@@ -51,9 +51,9 @@ Vector3 normal_at(const hal::DepthFrame& frame, int u, int v) {
   return normal.dot(middle) > 0 ? Vector3(-normal.normalized()) : Vector3(normal.normalized());
 }
 
-// Which way is up, from the building frames alone: starts against the mean image-down direction of the
-// hand-held camera and moves to the mean of the surface normals around it, the cone narrowing from 25
-// to 5 degrees: floor and table tops are the dominant surfaces facing up.
+// Which way is up, from the building frames alone: starts against the mean image-down direction of
+// the hand-held camera and moves to the mean of the surface normals around it, the cone narrowing
+// from 25 to 5 degrees: floor and table tops are the dominant surfaces facing up.
 Vector3 find_up(const std::vector<PosedFrame>& frames, hal::DepthFrame& scratch) {
   std::vector<Vector3> normals;
   Vector3 up = Vector3::Zero();
@@ -108,8 +108,9 @@ struct Comparison {
   std::size_t facing_points = 0;
 };
 
-// A height map says that between neighbours of different height stands a vertical face. The distance in
-// height from z to the cell's own height or to such a face (steps of 3 cm and more) beside it.
+// A height map says that between neighbours of different height stands a vertical face. The
+// distance in height from z to the cell's own height or to such a face (steps of 3 cm and more)
+// beside it.
 double to_surface(const mapping::ControlMap& map, mapping::CellIndex index, double z) {
   const double height = static_cast<double>(map.at(index).height_m);
   double low = height;
@@ -126,14 +127,15 @@ double to_surface(const mapping::ControlMap& map, mapping::CellIndex index, doub
 }
 
 double percentile(std::vector<double> values, double share) {
-  const auto middle = values.begin() + 
-                      static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  const auto middle =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
-// Every eighth pixel and row within the sensor's range, below the height limit of the map. Whether a
-// point counts is decided from its own frame (range, height, normal), never from the map's height.
+// Every eighth pixel and row within the sensor's range, below the height limit of the map. Whether
+// a point counts is decided from its own frame (range, height, normal), never from the map's
+// height.
 void compare(const Mapper& mapper, const hal::DepthFrame& frame, const CameraPose& pose,
              double max_z, Comparison& out) {
   for (int v = 4; v < 480; v += 8) {
@@ -188,15 +190,16 @@ Comparison run_kitchen(const std::string& folder, const std::vector<PosedFrame>&
 }
 
 void print(const char* name, std::size_t points, const std::vector<double>& errors_m) {
-  std::printf("%s: %zu points, %.1f %% on measured cells, error median %.1f mm, p75 %.1f mm\n", name,
-              points, 100.0 * static_cast<double>(errors_m.size()) / static_cast<double>(points),
+  std::printf("%s: %zu points, %.1f %% on measured cells, error median %.1f mm, p75 %.1f mm\n",
+              name, points,
+              100.0 * static_cast<double>(errors_m.size()) / static_cast<double>(points),
               1e3 * percentile(errors_m, 0.5), 1e3 * percentile(errors_m, 0.75));
 }
 
-// Two figures must hold. Points on ground-like surfaces (normal within 45 degrees of up, from their own
-// frame) against the height of their cell; and every point, walls, chair legs and all, against the map's
-// surface including its vertical faces. The third, every point against the height of its cell, is
-// printed and not judged: a wall's points hang below the height of their cell by nature.
+// Two figures must hold. Points on ground-like surfaces (normal within 45 degrees of up, from their
+// own frame) against the height of their cell; and every point, walls, chair legs and all, against
+// the map's surface including its vertical faces. The third, every point against the height of its
+// cell, is printed and not judged: a wall's points hang below the height of their cell by nature.
 TEST(KitchenSequence, HalfOfTheFramesPredictsTheOther) {
   const std::string folder = kDepthFolder + "/kitchen_a";
   const std::vector<PosedFrame> frames = list_frames(folder);
@@ -211,8 +214,9 @@ TEST(KitchenSequence, HalfOfTheFramesPredictsTheOther) {
   EXPECT_LE(percentile(comparison.surface_m, 0.5), 0.015);
 }
 
-// The sensor family of the robot. The recording has no pose: taken as a level camera, the frames must be
-// read and inserted, and the second must fall on the cells of the first. Heights are not judged.
+// The sensor family of the robot. The recording has no pose: taken as a level camera, the frames
+// must be read and inserted, and the second must fall on the cells of the first. Heights are not
+// judged.
 TEST(RealSenseFrames, AreReadAndInserted) {
   const std::string folder = kDepthFolder + "/realsense";
   std::ifstream file(folder + "/intrinsics.json");
@@ -222,9 +226,10 @@ TEST(RealSenseFrames, AreReadAndInserted) {
   auto mapper = std::make_unique<Mapper>();
   const double focal_px = json.at("fx");
   const double baseline_m = 1e-3 * json.at("stereo_baseline_mm").get<double>();
-  const mapping::DepthSensorModel sensor{.inverse_depth_sigma_per_m = 0.08 / (focal_px * baseline_m),
-                                         .min_range_m = 0.17,
-                                         .max_range_m = 4.0};
+  const mapping::DepthSensorModel sensor{
+      .inverse_depth_sigma_per_m = 0.08 / (focal_px * baseline_m),
+      .min_range_m = 0.17,
+      .max_range_m = 4.0};
   ASSERT_EQ(mapper->configure(mapping::test::recommended_config(), sensor), Status::kOk);
   const CameraPose pose = mapping::test::look({0, 0, 0.5}, 0, 0);
   mapping::IntegrationReport report;

@@ -204,11 +204,12 @@ TEST(HeightMap, RowsVisitEveryCellOnceInOrder) {
   auto map = std::make_unique<SmallMap>();
   map->reset({1005, -77});
   std::int32_t expected = map->first().ix;
-  map->for_row(map->first().iy + 2, expected, expected + kSide, [&](std::int32_t ix, MapCell& cell) {
-    EXPECT_EQ(ix, expected);
-    EXPECT_EQ(&cell, map->find({ix, map->first().iy + 2}));
-    ++expected;
-  });
+  map->for_row(map->first().iy + 2, expected, expected + kSide,
+               [&](std::int32_t ix, MapCell& cell) {
+                 EXPECT_EQ(ix, expected);
+                 EXPECT_EQ(&cell, map->find({ix, map->first().iy + 2}));
+                 ++expected;
+               });
   EXPECT_EQ(expected, map->first().ix + kSide);
 }
 

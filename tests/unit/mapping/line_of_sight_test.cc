@@ -102,7 +102,7 @@ Scene staircase() {
   scene.boxes.push_back({{0.7, -0.5, 0}, {0.9, 0.5, 0.04}});
   scene.boxes.push_back({{0.9, -0.5, 0}, {1.1, 0.5, 0.08}});
   scene.boxes.push_back({{1.1, -0.5, 0}, {3.0, 0.5, 0.12}});
-  scene.boxes.push_back({{0.6, 0.3, 0}, {0.66, 0.36, 0.25}});    // a post
+  scene.boxes.push_back({{0.6, 0.3, 0}, {0.66, 0.36, 0.25}});      // a post
   scene.boxes.push_back({{0.8, -0.45, 0.2}, {0.95, -0.3, 0.24}});  // a table top, free below
   return scene;
 }

@@ -62,7 +62,8 @@ double Scene::cast(const Vector3& origin, const Vector3& direction) const {
 double Scene::height(double x, double y) const {
   double z = ground_z_m + slope_x * x;
   for (const SceneBox& box : boxes) {
-    const bool over = x >= box.low.x() && x <= box.high.x() && y >= box.low.y() && y <= box.high.y();
+    const bool over =
+        x >= box.low.x() && x <= box.high.x() && y >= box.low.y() && y <= box.high.y();
     if (over) z = std::max(z, box.high.z());
   }
   return z;
@@ -154,8 +155,8 @@ void render(const Scene& scene, const Camera& camera, TimeNs stamp, Random* rand
         z = 1.0 / (1.0 / z + camera.inverse_depth_sigma_per_m * random->normal());
         lost = random->uniform();
       }
-      const bool valid = z >= camera.min_range_m && z <= camera.max_range_m &&
-                         !(lost < camera.dropout);
+      const bool valid =
+          z >= camera.min_range_m && z <= camera.max_range_m && !(lost < camera.dropout);
       out.depth[i] = valid ? static_cast<std::uint16_t>(z * 1000 + 0.5) : std::uint16_t{0};
     }
   }
@@ -169,7 +170,8 @@ SelfModel bodiless(double x_O_m, double y_O_m, double z_O_m) {
 
 std::unique_ptr<Mapper> make_mapper(const MappingConfig& config) {
   auto mapper = std::make_unique<Mapper>();
-  const Status status = mapper->configure(config, sensor_model(mini_cheetah_camera_specification()));
+  const Status status =
+      mapper->configure(config, sensor_model(mini_cheetah_camera_specification()));
   SUREFOOT_ASSERT(ok(status));
   return mapper;
 }

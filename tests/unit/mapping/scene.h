@@ -1,5 +1,5 @@
-// A small ray caster for depth frames with known truth: a ground plane, boxes standing on anything, and
-// capsules (legs). Noise as a stereo camera has it: constant in disparity, that is in 1 / z.
+// A small ray caster for depth frames with known truth: a ground plane, boxes standing on anything,
+// and capsules (legs). Noise as a stereo camera has it: constant in disparity, that is in 1 / z.
 #pragma once
 
 #include <memory>

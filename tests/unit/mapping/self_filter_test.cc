@@ -61,7 +61,8 @@ TEST(SelfFilter, NoLegCellsInATrot) {
       const Vector3 hip(x + 0.19, side * 0.11, 0.29);
       const Vector3 knee(x + 0.30 + 0.5 * swing, side * 0.11, 0.18);
       const Vector3 foot(x + 0.40 + swing, side * 0.11, 0.02 + 0.05 * std::fabs(std::sin(0.5 * i)));
-      for (const SelfCapsule& link : {SelfCapsule{hip, knee, 0.03}, SelfCapsule{knee, foot, 0.02}}) {
+      for (const SelfCapsule& link :
+           {SelfCapsule{hip, knee, 0.03}, SelfCapsule{knee, foot, 0.02}}) {
         scene.capsules.push_back({link.a_O_m, link.b_O_m, link.radius_m});
         ASSERT_TRUE(ok(self.capsules.push_back(link)));
       }
