@@ -135,7 +135,7 @@ class TerrainPanels {
       axes.horizontal(figure_.lane_half_width_m, lane);
       axes.horizontal(-figure_.lane_half_width_m, lane);
     }
-    if (figure_.goal_x_m > 0) axes.vertical(figure_.goal_x_m, {palette::kRed, 1.6, true});
+    if (figure_.goal_x_m > 0) axes.vertical(figure_.goal_x_m, {palette::kInk, 1.6, true});
     axes.frame();
     colour_bar(drawing_, area, scale, colour, bar_label);
     return axes;
@@ -231,19 +231,19 @@ Drawing terrain_figure(const RunLog& log, const TerrainFigure& figure) {
                            "Perceived map and footholds", "height [m]", !with_truth);
   const FootholdCounts counts = draw_footholds(drawing, log.touchdowns(), figure.O_in_W, axes);
   axes.legend(
-      {{fmt::format("nominal place ({})", counts.nominal), {palette::kFaint, 1, false},
+      {{fmt::format("at the nominal place ({})", counts.nominal), {palette::kFaint, 1, false},
         LegendItem::Mark::kDot},
-       {fmt::format("moved, nominal place cannot bear a foot ({})", counts.moved),
+       {fmt::format("moved to bear a foot ({})", counts.moved),
         {palette::kRed, 1, false}, LegendItem::Mark::kDot},
-       {fmt::format("no place within reach ({})", counts.none), {palette::kPurple, 2, false},
+       {fmt::format("none in reach ({})", counts.none), {palette::kPurple, 2, false},
         LegendItem::Mark::kRing},
-       {"unknown", {palette::kUnknown, 1, false}, LegendItem::Mark::kBox}});
+       {"unseen", {palette::kUnknown, 1, false}, LegendItem::Mark::kBox}});
   if (with_truth) {
     const HeightGrid off = difference(figure.perceived, figure.truth);
     Axes last = panels.panel(row++, off, difference_scale(off), difference_colour,
                              "Perceived minus true", "difference [m]", true);
-    last.legend({{"unknown", {palette::kUnknown, 1, false}, LegendItem::Mark::kBox},
-                 {"goal", {palette::kRed, 1.6, true}}});
+    last.legend({{"unseen", {palette::kUnknown, 1, false}, LegendItem::Mark::kBox},
+                 {"goal", {palette::kInk, 1.6, true}}});
   }
   return drawing;
 }

@@ -8,12 +8,11 @@
 #include <optional>
 
 #include "apps/common/backend.h"
-#include "apps/common/config_writer.h"
-#include "apps/common/figures.h"
 #include "apps/common/perceived_map.h"
 #include "apps/common/progress.h"
 #include "apps/common/report.h"
 #include "apps/common/run_loop.h"
+#include "apps/common/run_pictures.h"
 #include "apps/common/summary.h"
 #include "hal/candump/file_can_log.h"
 #include "hal/linux/clocks.h"
@@ -30,7 +29,6 @@ namespace fs = std::filesystem;
 // Ticks that count as start-up: they fault in code that nothing has touched before.
 constexpr std::uint64_t kWarmUpTicks = 50;
 constexpr double kCorridorHalfWidth_m = 0.25;  // of the map's error: a little wider than the feet
-constexpr double kRaster_m = 0.015;
 
 // out/WORLD-MISSION-sSEED, with -2, -3 … behind where it exists.
 fs::path new_folder(const RunRequest& request) {
@@ -44,16 +42,12 @@ fs::path new_folder(const RunRequest& request) {
   return folder;
 }
 
-bool has_lane(const Config& config) {
-  return config.world.generator == sim::Generator::kClutter;  // contract.md, the worlds
-}
-
 RefereeRules rules_for(const Config& config, bool has_truth) {
   RefereeRules rules;
   rules.has_truth = has_truth;
-  rules.has_goal = config.autonomy.mission.kind == autonomy::MissionConfig::Kind::kCross;
-  rules.goal_x_m = config.autonomy.mission.goal_x_m;
-  if (has_lane(config)) rules.lane_half_width_m = 0.5 * sim::kLaneWidth_m;
+  rules.has_goal = goal_x_m(config) >= 0;
+  rules.goal_x_m = goal_x_m(config);
+  rules.lane_half_width_m = lane_half_width_m(config);
   return rules;
 }
 
@@ -112,7 +106,7 @@ class Run {
     file << summary_json(facts_).dump(2) << "\n";
     file.close();
     if (!file) throw std::runtime_error((folder_ / "summary.json").string() + ": cannot be written");
-    if (options_.report) draw();
+    if (draws()) draw();
   }
 
   void print_verdict() const {
@@ -123,12 +117,17 @@ class Run {
                     to_string(facts_.verdict.outcome), facts_.verdict.reason, m.path_length_m,
                     m.mean_speed_m_s, m.estimate.drift_percent, 1000 * facts_.map.rmse_m,
                     facts_.sim_time_s / std::max(1e-9, facts_.wall_time_s), hex16(facts_.hash),
-                    (folder_ / (options_.report ? "report.html" : "summary.json")).string())
+                    (folder_ / (draws() ? "report.html" : "summary.json")).string())
             .c_str(),
         stdout);
   }
 
  private:
+  bool draws() const {
+    return options_.report == Keep::kAlways ||
+           (options_.report == Keep::kFailures && facts_.verdict.outcome != Outcome::kGoal);
+  }
+
   hal::RecordSink* open_record() {
     if (!ok(record_.open((folder_ / "record.mcap").string(), hal::surefoot_record_layout()))) {
       throw std::runtime_error(record_.error());
@@ -151,14 +150,11 @@ class Run {
     facts_.falls = referee.falls();
     facts_.sim_time_s = static_cast<double>(executive.ticks()) * autonomy::kTickPeriod.seconds();
     facts_.wall_time_s = loop.wall_time_s;
-    const autonomy::MissionConfig& mission = config_.autonomy.mission;
-    const bool has_goal = mission.kind == autonomy::MissionConfig::Kind::kCross;
-    facts_.measures = measure(*log_, has_goal ? mission.goal_x_m : -1);
+    facts_.measures = measure(*log_, goal_x_m(config_));
     facts_.terrain = backend_->terrain();
-    O_in_W_ = align_at_start(*log_);
     if (backend_->has_truth()) {
-      facts_.map = map_error(stack_.autonomy().map().mapper(), O_in_W_, *log_, ground(),
-                             kCorridorHalfWidth_m);
+      facts_.map = map_error(stack_.autonomy().map().mapper(), align_at_start(*log_), *log_,
+                             ground(), kCorridorHalfWidth_m);
     }
     facts_.static_bytes = memory_table().back().bytes;
     facts_.heap_calls = guard_.counts().heap_calls;
@@ -178,26 +174,12 @@ class Run {
   }
 
   void draw() const {
-    const double length = std::max(1.0, config_.autonomy.mission.goal_x_m);
-    const HeightGrid raster(-0.6, -0.75, length + 1.2, 1.5, kRaster_m);
-    TerrainFigure terrain;
-    terrain.O_in_W = O_in_W_;
-    terrain.goal_x_m = config_.autonomy.mission.goal_x_m;
-    if (has_lane(config_)) terrain.lane_half_width_m = 0.5 * sim::kLaneWidth_m;
-    terrain.perceived = perceived_grid(stack_.autonomy().map().mapper(), O_in_W_, raster);
-    if (backend_->has_truth()) terrain.truth = true_grid(ground(), raster);
-    const std::vector<NamedDrawing> drawings{
-        {"terrain", "White dots and rings: where a foot would have gone; red: where it was sent "
-                    "instead. Grey was never seen.",
-         terrain_figure(*log_, terrain)},
-        {"motion", "Dashed uprights: begin and end of walking.", motion_figure(*log_)},
-        {"torques", "Measured by the drives. Dashed: limit of the actuator.",
-         torque_figure(*log_, config_.robot)},
-        {"gait", "Four seconds from the middle of the walk.", gait_figure(*log_)},
-        {"timing", "Execution times on this computer, not part of the run's hash.",
-         timing_figure(facts_.tasks)}};
+    const mapping::Mapper& mapper = stack_.autonomy().map().mapper();
+    const TrueGround true_ground = backend_->has_truth() ? ground() : TrueGround{};
     std::string problem;
-    if (!write_report(folder_, facts_, drawings, config_text(config_), problem)) {
+    if (!write_report(folder_, facts_,
+                      run_pictures(*log_, config_, mapper, true_ground, facts_.tasks),
+                      config_text(config_), problem)) {
       throw std::runtime_error(problem);
     }
   }
@@ -215,7 +197,6 @@ class Run {
   std::optional<hal::LoggedCanPort> can_port_;
   std::unique_ptr<RunLog> log_;
   std::uint64_t max_ticks_ = 0;
-  Alignment O_in_W_;
   RunFacts facts_;
 };
 

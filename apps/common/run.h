@@ -1,6 +1,7 @@
 // One run from start to summary: what `surefoot run` does.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "apps/common/config_root.h"
@@ -8,12 +9,14 @@
 
 namespace surefoot::apps {
 
+enum class Keep : std::uint8_t { kNever, kFailures, kAlways };
+
 struct RunOptions {
   RunRequest request;
   std::filesystem::path out;  // empty: a new folder under out/
   bool record = true;         // record.mcap
   bool can_log = false;       // can.log
-  bool report = true;         // report.html and *.png
+  Keep report = Keep::kAlways;  // report.html and *.png
   bool realtime = false;      // hold the simulation back to real time
   bool quiet = false;         // no progress, no verdict
 };

@@ -66,7 +66,7 @@ CLI::App* add_run(CLI::App& app, Arguments& arguments) {
   command->add_option("--record", arguments.record, "write record.mcap")
       ->check(CLI::IsMember({"on", "off"}));
   command->add_option("--report", arguments.report, "write report.html and pictures")
-      ->check(CLI::IsMember({"on", "off"}));
+      ->check(CLI::IsMember({"on", "off", "failures"}));
   command->add_flag("--can-log", arguments.run.can_log, "write can.log (candump -L)");
   command->add_flag("--realtime", arguments.run.realtime, "hold the simulation to real time");
   command->add_flag("--quiet", arguments.run.quiet, "no progress");
@@ -107,7 +107,9 @@ int dispatch(int argc, char** argv, Stack& stack) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   arguments.run.record = arguments.record == "on";
-  arguments.run.report = arguments.report == "on";
+  arguments.run.report = arguments.report == "on"    ? Keep::kAlways
+                         : arguments.report == "off" ? Keep::kNever
+                                                     : Keep::kFailures;
   if (run_command->parsed()) return run(arguments.run, stack);
   if (check_command->parsed()) return check(arguments.run.request);
   if (info_command->parsed()) return info();

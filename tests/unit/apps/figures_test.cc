@@ -114,7 +114,7 @@ TEST(Figures, TerrainShowsThreePanelsAndTheReasonsOfMovedFootholds) {
   const std::string svg = to_svg(drawing);
   EXPECT_EQ(count(svg, "data:image/png;base64,"), 6u);  // three maps, three colour bars
   EXPECT_NE(svg.find("Perceived minus true"), std::string::npos);
-  EXPECT_NE(svg.find("moved, nominal place cannot bear a foot ("), std::string::npos);
+  EXPECT_NE(svg.find("moved to bear a foot ("), std::string::npos);
   EXPECT_GT(log.touchdowns().size(), 50u);
 }
 

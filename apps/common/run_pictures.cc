@@ -1,0 +1,51 @@
+#include "apps/common/run_pictures.h"
+
+#include <algorithm>
+
+#include "apps/common/figures.h"
+#include "sim_hal/world/world_spec.h"
+
+namespace surefoot::apps {
+namespace {
+
+constexpr double kRaster_m = 0.015;
+constexpr double kHalfWidth_m = 0.75;  // shown beside the line from start to goal
+constexpr double kMargin_m = 0.6;      // shown before the start and beyond the goal
+constexpr double kLongest_m = 12;      // of a picture
+
+}  // namespace
+
+double lane_half_width_m(const Config& config) {
+  return config.world.generator == sim::Generator::kClutter ? 0.5 * sim::kLaneWidth_m : 0.0;
+}
+
+double goal_x_m(const Config& config) {
+  const autonomy::MissionConfig& mission = config.autonomy.mission;
+  return mission.kind == autonomy::MissionConfig::Kind::kCross ? mission.goal_x_m : -1.0;
+}
+
+std::vector<NamedDrawing> run_pictures(const RunLog& log, const Config& config,
+                                       const mapping::Mapper& mapper, const TrueGround& ground,
+                                       const std::vector<runtime::TaskReport>& tasks) {
+  const double length = std::clamp(goal_x_m(config), 1.0, kLongest_m);
+  const HeightGrid raster(-kMargin_m, -kHalfWidth_m, length + 2 * kMargin_m, 2 * kHalfWidth_m,
+                          kRaster_m);
+  TerrainFigure terrain;
+  terrain.O_in_W = align_at_start(log);
+  terrain.goal_x_m = goal_x_m(config);
+  terrain.lane_half_width_m = lane_half_width_m(config);
+  terrain.perceived = perceived_grid(mapper, terrain.O_in_W, raster);
+  if (ground) terrain.truth = true_grid(ground, raster);
+  return {{"terrain",
+           "White: where a foot was planned and went. Red: where it was sent because the nominal "
+           "place (ring) cannot bear it. Grey: never seen.",
+           terrain_figure(log, terrain)},
+          {"motion", "Dashed uprights: begin and end of walking.", motion_figure(log)},
+          {"torques", "Measured by the drives. Dashed: limit of the actuator.",
+           torque_figure(log, config.robot)},
+          {"gait", "Four seconds from the middle of the walk.", gait_figure(log)},
+          {"timing", "Execution times on this computer; they are not part of the run's hash.",
+           timing_figure(tasks)}};
+}
+
+}  // namespace surefoot::apps

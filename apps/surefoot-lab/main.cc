@@ -1,0 +1,89 @@
+// Campaigns, benchmarks and conversions around the surefoot binary.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+
+#include "apps/common/version.h"
+#include "apps/surefoot-lab/bench.h"
+#include "apps/surefoot-lab/campaign.h"
+#include "apps/surefoot-lab/export.h"
+
+namespace surefoot::apps {
+namespace {
+
+struct Arguments {
+  CampaignOptions campaign;
+  std::string seeds;
+  std::string input;
+  std::string to;
+  std::string bench_name;
+  std::filesystem::path out;
+};
+
+CLI::App* add_campaign(CLI::App& app, Arguments& arguments) {
+  RunRequest& request = arguments.campaign.request;
+  CLI::App* command = app.add_subcommand("campaign", "many runs; writes campaign.json");
+  command->add_option("--robot", request.robot, "name or file")->required();
+  command->add_option("--world", request.world, "name[:parameters] or file")->required();
+  command->add_option("--mission", request.mission, "name or file")->required();
+  command->add_option("--hal", request.hal, "backend")->capture_default_str();
+  command->add_option("--seeds", arguments.seeds, "A..B, both included")->required();
+  command->add_option("--jobs", arguments.campaign.jobs, "runs at a time")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  command->add_option("--out", arguments.out, "folder for the results");
+  command->add_option("--record", arguments.campaign.record, "whose record is kept")
+      ->check(CLI::IsMember({"off", "failures", "all"}))
+      ->capture_default_str();
+  command->add_option("--set", request.sets, "key=value, any key of the configuration")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  return command;
+}
+
+int run_campaign(Arguments& arguments) {
+  const auto seeds = parse_seeds(arguments.seeds);
+  if (!seeds) {
+    std::fputs(fmt::format("--seeds: '{}' is not A..B\n", arguments.seeds).c_str(), stderr);
+    return 2;
+  }
+  arguments.campaign.seeds = *seeds;
+  arguments.campaign.out = arguments.out;
+  return campaign(arguments.campaign);
+}
+
+int dispatch(int argc, char** argv, Stack& stack) {
+  CLI::App app("Campaigns, benchmarks and conversions. Manual: docs/running.md");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", version_text());
+  Arguments arguments;
+  CLI::App* campaign_command = add_campaign(app, arguments);
+  CLI::App* bench_command = app.add_subcommand("bench", "benchmarks: run, pictures");
+  bench_command->add_option("NAME", arguments.bench_name, "one of them; all when left out");
+  CLI::App* export_command = app.add_subcommand("export", "converts a record");
+  export_command->add_option("RECORD", arguments.input, "record.mcap")->required();
+  export_command->add_option("--to", arguments.to, "format")
+      ->required()
+      ->check(CLI::IsMember({"candump", "csv", "html"}));
+  export_command->add_option("--out", arguments.out, "folder; the record's own when left out");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (campaign_command->parsed()) return run_campaign(arguments);
+  if (bench_command->parsed()) return bench(arguments.bench_name, stack);
+  return export_command->parsed()
+             ? export_record(arguments.input, arguments.to, arguments.out, stack)
+             : 2;
+}
+
+}  // namespace
+}  // namespace surefoot::apps
+
+int main(int argc, char** argv) {
+  static surefoot::apps::Stack stack;
+  return surefoot::apps::dispatch(argc, argv, stack);
+}
