@@ -22,6 +22,7 @@ void BodyStateEstimator::initialise(const Vector3& p_OB_m) {
   v_O_m_s_.setZero();
   feet_O_m_.fill(Vector3::Zero());
   landmark_.fill(false);
+  slips_ = 0;
   covariance_.setZero();
   covariance_(0, 0) = 1e-8;
   covariance_(1, 1) = 1e-4;
@@ -34,24 +35,34 @@ void BodyStateEstimator::update(const Vector3& acceleration_O_m_s2,
                                 const std::array<FootObservation, robot::kLegs>& feet,
                                 double step_s) {
   predict(acceleration_O_m_s2, feet, step_s);
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    if (feet[leg].in_contact) {
+      correct_with_foot(leg, feet[leg]);
+    } else {
+      landmark_[leg] = false;
+    }
+  }
+}
+
+void BodyStateEstimator::correct_with_foot(std::size_t leg, const FootObservation& foot) {
   const double position_variance = math::square(config_.foot_position_noise_m);
   const double velocity_variance = math::square(config_.foot_velocity_noise_m_s);
-  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    const FootObservation& foot = feet[leg];
-    if (!foot.in_contact) {
-      landmark_[leg] = false;
-      continue;
-    }
-    if (!landmark_[leg]) start_landmark(leg, foot);
-    StateVector h = StateVector::Zero();
-    h[foot_state(leg)] = 1.0;
-    h[0] = -1.0;
-    correct(h, foot.from_body_O_m - (feet_O_m_[leg] - p_O_m_), position_variance);
-    h.setZero();
-    h[1] = 1.0;
-    const Vector3 v_measured = foot.rolling_velocity_O_m_s - foot.velocity_from_body_O_m_s;
-    correct(h, v_measured - v_O_m_s_, velocity_variance);
+  const Vector3 innovation =
+      foot.rolling_velocity_O_m_s - foot.velocity_from_body_O_m_s - v_O_m_s_;
+  const double gate = math::square(config_.slip_gate_sigma);
+  if (innovation.squaredNorm() > gate * (covariance_(1, 1) + velocity_variance)) {
+    landmark_[leg] = false;
+    ++slips_;
+    return;
   }
+  if (!landmark_[leg]) start_landmark(leg, foot);
+  StateVector h = StateVector::Zero();
+  h[1] = 1.0;
+  correct(h, innovation, velocity_variance);
+  h[1] = 0.0;
+  h[foot_state(leg)] = 1.0;
+  h[0] = -1.0;
+  correct(h, foot.from_body_O_m - (feet_O_m_[leg] - p_O_m_), position_variance);
 }
 
 void BodyStateEstimator::predict(const Vector3& acceleration,

@@ -10,11 +10,14 @@
 //                     v = rolling velocity of the foot's centre - R_OB (J qd + omega x fk)
 // A round foot rolls: its centre moves with omega_shank x r n although the contact does not slip; over
 // a stance of the Mini-Cheetah that is about 1 cm, 10 % of a step, so it is modelled (n = up).
+// A foot whose velocity disagrees with the prediction by more than slip_gate_sigma is slipping or
+// in the air: it is left out and its landmark starts anew when it agrees again.
 //
 // Cost: at most 8 scalar updates of a 6x6 covariance. Memory: < 1 kB.
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "core/estimation/config.h"
 #include "core/math/linear.h"
@@ -43,6 +46,8 @@ class BodyStateEstimator {
 
   const Vector3& p_OB_m() const { return p_O_m_; }
   const Vector3& v_OB_m_s() const { return v_O_m_s_; }
+  // Foot observations left out as slipping since initialise().
+  std::uint64_t slips() const { return slips_; }
   // Landmark of a foot in contact.
   const Vector3& foot_O_m(std::size_t leg) const { return feet_O_m_[leg]; }
   double position_variance_m2() const { return covariance_(0, 0); }
@@ -55,6 +60,7 @@ class BodyStateEstimator {
 
   void predict(const Vector3& acceleration_O_m_s2,
                const std::array<FootObservation, robot::kLegs>& feet, double step_s);
+  void correct_with_foot(std::size_t leg, const FootObservation& foot);
   void start_landmark(std::size_t leg, const FootObservation& foot);
   // Scalar measurement h . x = z on the three axes at once.
   void correct(const StateVector& h, const Vector3& innovation, double variance);
@@ -65,6 +71,7 @@ class BodyStateEstimator {
   std::array<Vector3, robot::kLegs> feet_O_m_;
   std::array<bool, robot::kLegs> landmark_{};
   Covariance covariance_ = Covariance::Zero();
+  std::uint64_t slips_ = 0;
 };
 
 }  // namespace surefoot::estimation

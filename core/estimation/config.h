@@ -52,6 +52,7 @@ struct BodyStateConfig {
   double foot_position_noise_m = 0;      // forward kinematics, per measurement
   double foot_velocity_noise_m_s = 0;    // encoder velocities, foot deformation
   double foot_slip_noise_m_sqrt_s = 0;   // random walk of a foot in contact
+  double slip_gate_sigma = 0;            // a foot whose velocity is farther off is not used
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -63,6 +64,8 @@ struct BodyStateConfig {
                "of a foot in contact");
     visit.real("foot_slip_noise_m_sqrt_s", self.foot_slip_noise_m_sqrt_s, {0.0, 1.0},
                "random walk of a foot in contact");
+    visit.real("slip_gate_sigma", self.slip_gate_sigma, {1.0, 100.0},
+               "a foot whose velocity is farther off is not used");
   }
 };
 

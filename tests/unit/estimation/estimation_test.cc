@@ -124,6 +124,7 @@ BodyStateConfig body_config() {
   config.foot_position_noise_m = 0.002;
   config.foot_velocity_noise_m_s = 0.1;
   config.foot_slip_noise_m_sqrt_s = 0.005;
+  config.slip_gate_sigma = 4.0;
   return config;
 }
 
