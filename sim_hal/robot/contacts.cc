@@ -44,8 +44,6 @@ Contacts::~Contacts() {
   for (const dGeomID geom : geoms_) dGeomDestroy(geom);
   for (const dGeomID geom : boxes_) dGeomDestroy(geom);
   dGeomDestroy(plane_);
-  if (field_ != nullptr) dGeomDestroy(field_);
-  if (field_data_ != nullptr) dGeomHeightfieldDataDestroy(field_data_);
 }
 
 void Contacts::make_shapes(const Articulation& robot) {
@@ -87,59 +85,6 @@ void Contacts::make_terrain(const Terrain& terrain) {
     dGeomSetPosition(geom, box.x_m, box.y_m, box.bottom_m + height / 2);
     boxes_.push_back(geom);
   }
-  const HeightGrid& grid = terrain.grid;
-  if (grid.empty()) return;
-  // ODE's field: local y up, samples along local x and z, origin in the middle. Turned +90 degrees
-  // about x, local z points to W's -y: rows are stored from the greatest y downwards.
-  std::vector<double> rows;
-  rows.reserve(grid.z_m.size());
-  for (std::size_t j = grid.ny; j-- > 0;) {
-    for (std::size_t i = 0; i < grid.nx; ++i) rows.push_back(grid.at(i, j));
-  }
-  const double width = grid.end_x_m() - grid.x0_m;
-  const double depth = grid.end_y_m() - grid.y0_m;
-  field_data_ = dGeomHeightfieldDataCreate();
-  dGeomHeightfieldDataBuildDouble(field_data_, rows.data(), 1, width, depth,
-                                  static_cast<int>(grid.nx), static_cast<int>(grid.ny), 1.0, 0.0,
-                                  1.0, 0);
-  const auto [low, high] = std::minmax_element(rows.begin(), rows.end());
-  dGeomHeightfieldDataSetBounds(field_data_, *low - 1.0, *high + 0.1);
-  field_ = dCreateHeightfield(nullptr, field_data_, 1);
-  dMatrix3 r{};
-  dRFromAxisAndAngle(r, 1, 0, 0, std::acos(-1.0) / 2);
-  dGeomSetRotation(field_, r);
-  dGeomSetPosition(field_, grid.x0_m + width / 2, grid.y0_m + depth / 2, 0);
-  reserve_field();
-}
-
-// ODE's height field grows its work buffers with the largest shape it has met and with the number of
-// different planes under it: show it a large box on ground without two equal planes, once, so that no
-// step allocates. Beyond 32 cells a side the buffers would take over 20 MB: a trunk that falls on a
-// finer map may still make ODE allocate.
-void Contacts::reserve_field() {
-  constexpr int kMaxCells = 32;
-  dReal trunk[3];
-  dGeomBoxGetLengths(geoms_[kTrunk], trunk);
-  const double diagonal =
-      std::sqrt(trunk[0] * trunk[0] + trunk[1] * trunk[1] + trunk[2] * trunk[2]);
-  const int cells = std::min(kMaxCells, static_cast<int>(std::ceil(diagonal / grid_.cell_m)) + 4);
-  std::vector<double> rough;
-  for (int i = 0; i < (cells + 1) * (cells + 1); ++i) {
-    rough.push_back(0.1 * grid_.cell_m * ((i * 7919) % 1009) / 1009.0);
-  }
-  const double side = cells * grid_.cell_m;
-  const dHeightfieldDataID data = dGeomHeightfieldDataCreate();
-  dGeomHeightfieldDataBuildDouble(data, rough.data(), 1, side, side, cells + 1, cells + 1, 1.0, 0.0,
-                                  1.0, 0);
-  dGeomHeightfieldSetHeightfieldData(field_, data);
-  const dGeomID probe = dCreateBox(nullptr, 0.999 * side, 0.999 * side, side);
-  const dReal* centre = dGeomGetPosition(field_);
-  dGeomSetPosition(probe, centre[0], centre[1], 0);
-  std::array<dContactGeom, kMaxPerPair> found;
-  dCollide(probe, field_, kMaxPerPair, found.data(), sizeof(dContactGeom));
-  dGeomDestroy(probe);
-  dGeomHeightfieldSetHeightfieldData(field_, field_data_);
-  dGeomHeightfieldDataDestroy(data);
 }
 
 void Contacts::collide() {
@@ -158,7 +103,7 @@ void Contacts::collide_shape(std::size_t shape) {
   const double y = 0.5 * (y0 + y1);
   if (bounds[4] > index_.max_height_m(x0, y0, x1, y1)) return;
   if (grid_.contains(x, y)) {
-    collide_pair(shape, field_);
+    collide_grid(shape);
   } else if (bounds[4] <= 0) {
     collide_pair(shape, plane_);
   }
@@ -172,6 +117,53 @@ void Contacts::collide_pair(std::size_t shape, dGeomID ground) {
   std::array<dContactGeom, kMaxPerPair> found;
   const int count = dCollide(geoms_[shape], ground, kMaxPerPair, found.data(), sizeof(dContactGeom));
   for (int i = 0; i < count; ++i) add(shape, found[static_cast<std::size_t>(i)]);
+}
+
+// Capsules as balls a radius apart at most; the trunk, which only falls, as points of its surface.
+void Contacts::collide_grid(std::size_t shape) {
+  const dGeomID geom = geoms_[shape];
+  const Vector3 centre = vector(dGeomGetPosition(geom));
+  const dReal* r = dGeomGetRotation(geom);
+  if (shape == kTrunk) {
+    dReal size[3];
+    dGeomBoxGetLengths(geom, size);
+    for (int k = 0; k < 27; ++k) {
+      const double x = 0.5 * size[0] * (k % 3 - 1);
+      const double y = 0.5 * size[1] * (k / 3 % 3 - 1);
+      const double z = 0.5 * size[2] * (k / 9 - 1);
+      touch_grid(shape, centre + Vector3(r[0] * x + r[1] * y + r[2] * z,
+                                         r[4] * x + r[5] * y + r[6] * z,
+                                         r[8] * x + r[9] * y + r[10] * z), 0.0);
+    }
+    return;
+  }
+  if (dGeomGetClass(geom) == dSphereClass) {
+    touch_grid(shape, centre, dGeomSphereGetRadius(geom));
+    return;
+  }
+  dReal radius = 0;
+  dReal length = 0;
+  dGeomCapsuleGetParams(geom, &radius, &length);
+  const Vector3 axis(r[2], r[6], r[10]);
+  const int parts = static_cast<int>(std::ceil(length / radius));
+  for (int k = 0; k <= parts; ++k) {
+    touch_grid(shape, centre + axis * (length * (static_cast<double>(k) / parts - 0.5)), radius);
+  }
+}
+
+void Contacts::touch_grid(std::size_t shape, const Vector3& centre_m, double radius_m) {
+  std::array<GridContact, kMaxPerPair> found;
+  const std::size_t count = sphere_on_grid(grid_, centre_m, radius_m, found);
+  for (std::size_t k = 0; k < count; ++k) {
+    dContactGeom geometry{};
+    for (int axis = 0; axis < 3; ++axis) {
+      geometry.pos[axis] = found[k].position_m[axis];
+      geometry.normal[axis] = found[k].normal[axis];
+    }
+    geometry.depth = found[k].depth_m;
+    geometry.g1 = geoms_[shape];
+    add(shape, geometry);
+  }
 }
 
 // The normal of an ODE contact points into the first geom, here always the robot's.

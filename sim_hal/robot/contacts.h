@@ -1,5 +1,5 @@
 // Contact between the robot's collision shapes and the ground: foot spheres, shank and thigh capsules,
-// trunk box, against plane, boxes and height field. The robot does not collide with itself.
+// trunk box, against plane, boxes (ODE's collider) and grid of heights (grid_contacts.h). The robot does not collide with itself.
 //
 // Friction is Coulomb's cone as far as ODE's pyramid can: one side of the pyramid follows the slip, or,
 // while a contact sticks, its last tangential force. README.md "Friction" has the measured figures.
@@ -15,6 +15,7 @@
 #include "core/math/linear.h"
 #include "sim_hal/robot/articulation.h"
 #include "sim_hal/simulator_config.h"
+#include "sim_hal/world/grid_contacts.h"
 #include "sim_hal/world/terrain_index.h"
 
 namespace surefoot::sim {
@@ -62,9 +63,10 @@ class Contacts {
 
   void make_shapes(const Articulation& robot);
   void make_terrain(const Terrain& terrain);
-  void reserve_field();
   void collide_shape(std::size_t shape);
   void collide_pair(std::size_t shape, dGeomID ground);
+  void collide_grid(std::size_t shape);
+  void touch_grid(std::size_t shape, const Vector3& centre_m, double radius_m);
   void add(std::size_t shape, const dContactGeom& geometry);
 
   dWorldID world_;
@@ -73,8 +75,6 @@ class Contacts {
   double friction_;
   std::array<dGeomID, kShapes> geoms_{};
   dGeomID plane_ = nullptr;
-  dGeomID field_ = nullptr;
-  dHeightfieldDataID field_data_ = nullptr;
   const HeightGrid& grid_;
   std::vector<dGeomID> boxes_;
   dJointGroupID group_ = nullptr;

@@ -33,7 +33,7 @@ struct TerrainBox {
 };
 
 // Heights at nodes (x0 + i cell, y0 + j cell), z[j * nx + i]. Between nodes two triangles per cell
-// split along the diagonal from (i, j) to (i + 1, j + 1), as ODE's height field does in W.
+// split along the diagonal from (i, j) to (i + 1, j + 1).
 struct HeightGrid {
   std::size_t nx = 0;
   std::size_t ny = 0;

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "sim_hal/world/grid_contacts.h"
 #include "sim_hal/world/height_map_file.h"
 #include "sim_hal/world/terrain.h"
 #include "tests/unit/sim_hal/sim_fixture.h"
@@ -154,8 +155,7 @@ TEST_F(HeightMapFile, LiesTheRightWayRound) {
   EXPECT_NEAR(terrain.height_m(2.5, 0.5), 0.25 + 0.025, 0.01);
 }
 
-// ODE's height field, its axes and its triangles against our own heights: a robot dropped on a random
-// field rests with its feet on the surface that the rays and the summary know.
+// A robot on a random field rests with its feet on the surface that the rays and the summary know.
 TEST_F(HeightMapFile, FeetRestOnTheSurfaceTheRaysSee) {
   std::string text = "ncols 50\nnrows 30\ncellsize 0.1\n";
   Random random(3);
@@ -196,6 +196,59 @@ TEST_F(HeightMapFile, FeetRestOnTheSurfaceTheRaysSee) {
     EXPECT_NEAR(gap, 0, 0.0008);
   }
   EXPECT_GE(touching, 3);
+}
+
+TEST(GridContacts, SphereTouchesFacesEdgesAndCorners) {
+  // A flat roof with one raised node: a pyramid.
+  HeightGrid grid;
+  grid.nx = grid.ny = 11;
+  grid.cell_m = 0.1;
+  grid.z_m.assign(121, 0.0);
+  grid.z_m[5 * 11 + 5] = 0.05;
+  std::array<GridContact, 4> found;
+  ASSERT_EQ(sphere_on_grid(grid, {0.23, 0.27, 0.014}, 0.015, found), 1u);  // face
+  EXPECT_NEAR(found[0].depth_m, 0.001, 1e-12);
+  EXPECT_NEAR(found[0].normal.z(), 1.0, 1e-12);
+  ASSERT_EQ(sphere_on_grid(grid, {0.5, 0.5, 0.064}, 0.015, found), 1u);  // the top, a corner
+  EXPECT_NEAR(found[0].depth_m, 0.001, 1e-12);
+  EXPECT_NEAR(found[0].normal.z(), 1.0, 1e-12);
+  EXPECT_EQ(sphere_on_grid(grid, {0.5, 0.5, 0.066}, 0.015, found), 0u);
+  ASSERT_EQ(sphere_on_grid(grid, {0.2, 0.2, -0.02}, 0.015, found), 1u);  // buried
+  EXPECT_NEAR(found[0].depth_m, 0.035, 1e-9);
+  EXPECT_NEAR(found[0].normal.z(), 1.0, 1e-9);
+  // A trench: both walls at once.
+  for (std::size_t j = 0; j < 11; ++j) grid.z_m[j * 11 + 5] = -0.1;
+  EXPECT_EQ(sphere_on_grid(grid, {0.5, 0.25, -0.08}, 0.015, found), 2u);
+}
+
+TEST(GridContacts, DepthAgreesWithADenseSearch) {
+  HeightGrid grid;
+  grid.nx = grid.ny = 21;
+  grid.cell_m = 0.02;
+  Random random(8);
+  for (int i = 0; i < 441; ++i) grid.z_m.push_back(random.uniform(0, 0.01));
+  std::array<GridContact, 4> found;
+  int touching = 0;
+  for (int i = 0; i < 300; ++i) {
+    Vector3 centre;
+    centre.x() = random.uniform(0.05, 0.35);
+    centre.y() = random.uniform(0.05, 0.35);
+    centre.z() = grid.height_m(centre.x(), centre.y()) + random.uniform(0.008, 0.016);
+    double nearest = 1;
+    for (double dx = -0.016; dx <= 0.016; dx += 0.0002) {
+      for (double dy = -0.016; dy <= 0.016; dy += 0.0002) {
+        const double z = grid.height_m(centre.x() + dx, centre.y() + dy);
+        nearest = std::min(nearest, std::hypot(dx, dy, centre.z() - z));
+      }
+    }
+    const std::size_t count = sphere_on_grid(grid, centre, 0.015, found);
+    if (std::fabs(nearest - 0.015) < 0.00002) continue;
+    ASSERT_EQ(count > 0, nearest < 0.015);
+    if (count == 0) continue;
+    ++touching;
+    EXPECT_NEAR(found[0].depth_m, 0.015 - nearest, 0.00002);
+  }
+  EXPECT_GT(touching, 100);
 }
 
 TEST_F(HeightMapFile, ScalesMirrorsAndReportsWhatItInvented) {
