@@ -216,7 +216,7 @@ void Executive::release_slow(std::size_t index) {
   if (state.pending) {
     // A task that is released by events may have a period shorter than its latency; only an overrun
     // makes it miss a release.
-    if (ticks_ > state.due_tick) ++state.skipped;
+    if (ticks_ >= state.due_tick) ++state.skipped;
     return;
   }
   const TimeNs begin = stopwatch();

@@ -11,6 +11,10 @@
 // slow tasks of the table) and it is published at the first later tick where the bit is clear. A
 // slow task that is still pending when its next release comes is not released; that is counted.
 //
+// A task that is released by events (a fresh frame) has a period shorter than its latency and a
+// release() that answers false when there is none; it is not asked while it is pending, so events
+// closer together than the latency are passed over. Only ticks lost to an overrun count as skipped.
+//
 // Hash chain: h[t] = Fnv64(h[t-1], canonical bytes of TickInputs, of the depth frame where fresh,
 // of TickOutputs), h[-1] = 0. Execution times never enter it.
 //
@@ -93,8 +97,7 @@ class Executive {
  public:
   // Checks the table and takes over the set-up; the first tick is due at clock.now() + period.
   // kInvalid: no clock, no or too many tasks, too many slow tasks, a zero period, phase >= period,
-  // a null function, a latency above the task's period, or a slow task without a runner; nothing
-  // changed.
+  // a null function, or a slow task without a runner; nothing changed.
   Status start(const ExecutiveSetup& setup);
 
   // One tick. kEndOfData: the clock has no further ticks, nothing was latched or changed. Any other
