@@ -9,8 +9,8 @@ namespace surefoot::actuation {
 namespace {
 
 constexpr std::uint32_t kLastStandardId = 0x7FF;
-constexpr std::uint8_t kNoReplyFlags = hal::CanFrame::kExtendedId | hal::CanFrame::kFlexibleDataRate |
-                                       hal::CanFrame::kBitRateSwitch;
+constexpr std::uint8_t kNoReplyFlags =
+    hal::CanFrame::kExtendedId | hal::CanFrame::kFlexibleDataRate | hal::CanFrame::kBitRateSwitch;
 
 bool is_finite(const JointCommand& c) {
   return math::is_finite(c.position_rad) && math::is_finite(c.velocity_rad_s) &&
@@ -21,9 +21,8 @@ bool is_finite(const JointCommand& c) {
 // Positions count only where there is a gain to act on them.
 bool differs(const JointCommand& a, const JointCommand& b) {
   const bool moved = a.position_rad != b.position_rad && a.kp_Nm_rad > 0.0;
-  return moved || a.velocity_rad_s != b.velocity_rad_s ||
-         a.kp_Nm_rad != b.kp_Nm_rad || a.kd_Nm_s_rad != b.kd_Nm_s_rad ||
-         a.torque_Nm != b.torque_Nm;
+  return moved || a.velocity_rad_s != b.velocity_rad_s || a.kp_Nm_rad != b.kp_Nm_rad ||
+         a.kd_Nm_s_rad != b.kd_Nm_s_rad || a.torque_Nm != b.torque_Nm;
 }
 
 double magnitude(double x) { return x < 0.0 ? -x : x; }
@@ -59,8 +58,8 @@ Status JointBus::configure(const robot::RobotModel& model, const ActuationParame
     const Status status = configure_joint(model, joint);
     if (!ok(status)) return status;
     for (std::size_t other = 0; other < joint; ++other) {
-      const bool same = wires_[other].bus == wires_[joint].bus &&
-                        wires_[other].can_id == wires_[joint].can_id;
+      const bool same =
+          wires_[other].bus == wires_[joint].bus && wires_[other].can_id == wires_[joint].can_id;
       if (same) return Status::kInvalid;
     }
   }
@@ -87,8 +86,8 @@ Status JointBus::configure_joint(const robot::RobotModel& model, std::size_t joi
                           math::is_finite(wiring.belt_ratio) && wiring.belt_ratio > 0.0;
   const bool good_address = wiring.bus < hal::kMaxCanBuses && wiring.can_id >= 1 &&
                             wiring.can_id <= 0xFF;  // a reply names the drive in one byte
-  const bool good_limits = math::is_finite(wiring.offset_rad) && math::is_finite(actuator.min_rad) &&
-                           math::is_finite(actuator.max_rad) &&
+  const bool good_limits = math::is_finite(wiring.offset_rad) &&
+                           math::is_finite(actuator.min_rad) && math::is_finite(actuator.max_rad) &&
                            math::is_finite(actuator.torque_limit_Nm) &&
                            actuator.torque_limit_Nm > 0.0;
   if (!valid(wire.ranges) || !good_scale || !good_address || !good_limits) return Status::kInvalid;

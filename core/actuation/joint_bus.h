@@ -3,14 +3,15 @@
 // With belt ratio b (drive-output turns per joint turn), direction d = +-1 and offset o:
 //   wire angle  = d b q + o        wire speed = d b qd        wire torque = d tau / b
 //   wire kp     = kp / b^2         wire kd    = kd / b^2
-// so that power (tau qd) is the same on both sides of the belt and a gain means at the joint what the
-// controller asked for.
+// so that power (tau qd) is the same on both sides of the belt and a gain means at the joint what
+// the controller asked for.
 //
-// All quantities of this header are joint side, joints in the order of robot_model.h. A received frame
-// is attributed by its bus and by byte 0 of its data, never by its CAN id: drives may all answer with
-// one id. A frame of 8 bytes whose id is a drive's own is a command (an echo of ours, or a recorded
-// bus) and not a reply; a drive with 8-byte replies must therefore not be given its own id as master
-// id. No allocation, no time source; cost of a tick: twelve encodes and as many decodes as frames.
+// All quantities of this header are joint side, joints in the order of robot_model.h. A received
+// frame is attributed by its bus and by byte 0 of its data, never by its CAN id: drives may all
+// answer with one id. A frame of 8 bytes whose id is a drive's own is a command (an echo of ours,
+// or a recorded bus) and not a reply; a drive with 8-byte replies must therefore not be given its
+// own id as master id. No allocation, no time source; cost of a tick: twelve encodes and as many
+// decodes as frames.
 #pragma once
 
 #include <array>
@@ -124,10 +125,11 @@ using JointStates = std::array<JointState, robot::kJoints>;
 
 class JointBus {
  public:
-  // Checks the wiring and clears all state. kInvalid: a range is not valid, a direction is not +-1, a
-  // belt ratio not above zero, a bus or id out of range, or two joints share bus and id. kOutOfRange:
-  // a joint can turn beyond the wire's position range, or its soft stops leave no way to turn. After
-  // a failure the bus is not configured: encode appends nothing and receive counts only.
+  // Checks the wiring and clears all state. kInvalid: a range is not valid, a direction is not +-1,
+  // a belt ratio not above zero, a bus or id out of range, or two joints share bus and id.
+  // kOutOfRange: a joint can turn beyond the wire's position range, or its soft stops leave no way
+  // to turn. After a failure the bus is not configured: encode appends nothing and receive counts
+  // only.
   Status configure(const robot::RobotModel& model, const ActuationParameters& parameters = {});
 
   // Takes the frames of one tick, oldest first.
@@ -136,10 +138,11 @@ class JointBus {
   // counts as sent, so that missed and duplicate replies are found there too.
   void listen(std::span<const hal::CanFrame> frames);
 
-  // Appends the twelve command frames by bus, then by joint, and closes the tick: drives that did not
-  // answer the frame before count as missed. Positions are kept inside the soft stops, torque inside
-  // the actuator's limit; a joint at or beyond a soft stop is given neither torque nor speed further
-  // out. kInvalid: a command was not finite; that joint got the damping command, the others theirs.
+  // Appends the twelve command frames by bus, then by joint, and closes the tick: drives that did
+  // not answer the frame before count as missed. Positions are kept inside the soft stops, torque
+  // inside the actuator's limit; a joint at or beyond a soft stop is given neither torque nor speed
+  // further out. kInvalid: a command was not finite; that joint got the damping command, the others
+  // theirs.
   // kExhausted: no room for all frames, none appended. kUnavailable: not configured, none appended.
   template <std::size_t kCapacity>
   Status encode(const JointCommands& commands, FixedVector<hal::CanFrame, kCapacity>& out) {
@@ -155,8 +158,9 @@ class JointBus {
   }
 
   // Appends a special frame for every drive: kEnterMotorMode starts the drives or, when they run,
-  // polls their state without a command; kExitMotorMode makes them limp at once. Closes the tick like
-  // encode. kInvalid: kCommand, or kSetZero, which is a calibration step and not for a running robot.
+  // polls their state without a command; kExitMotorMode makes them limp at once. Closes the tick
+  // like encode. kInvalid: kCommand, or kSetZero, which is a calibration step and not for a running
+  // robot.
   // kExhausted, kUnavailable: as encode.
   template <std::size_t kCapacity>
   Status encode_special_to_all(FrameKind kind, FixedVector<hal::CanFrame, kCapacity>& out) {

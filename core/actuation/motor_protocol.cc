@@ -104,8 +104,10 @@ CommandBytes encode_special(FrameKind kind) {
 
 Status encode_command(const WireRanges& ranges, const DriveCommand& command, CommandBytes& out) {
   if (!valid(ranges) || !is_finite(command)) return Status::kInvalid;
-  const std::uint32_t p = encode_symmetric(command.position_rad, ranges.position_rad, kPositionBits);
-  const std::uint32_t v = encode_symmetric(command.velocity_rad_s, ranges.velocity_rad_s, kFieldBits);
+  const std::uint32_t p =
+      encode_symmetric(command.position_rad, ranges.position_rad, kPositionBits);
+  const std::uint32_t v =
+      encode_symmetric(command.velocity_rad_s, ranges.velocity_rad_s, kFieldBits);
   const std::uint32_t kp = encode_field(command.kp_Nm_rad, 0.0, ranges.kp_max_Nm_rad, kFieldBits);
   const std::uint32_t kd =
       encode_field(command.kd_Nm_s_rad, 0.0, ranges.kd_max_Nm_s_rad, kFieldBits);
@@ -160,8 +162,9 @@ Result<Reply> decode_reply(const WireRanges& ranges, std::span<const std::uint8_
 }
 
 Result<ReplyBytes> encode_reply(const WireRanges& ranges, const Reply& reply) {
-  const bool finite = math::is_finite(reply.position_rad) && math::is_finite(reply.velocity_rad_s) &&
-                      math::is_finite(reply.torque_Nm) && math::is_finite(reply.voltage_V);
+  const bool finite = math::is_finite(reply.position_rad) &&
+                      math::is_finite(reply.velocity_rad_s) && math::is_finite(reply.torque_Nm) &&
+                      math::is_finite(reply.voltage_V);
   if (!valid(ranges) || !finite) return Status::kInvalid;
   const std::uint32_t p = encode_symmetric(reply.position_rad, ranges.position_rad, kPositionBits);
   ReplyBytes out;

@@ -6,12 +6,12 @@
 // Reply,   big endian:  id 8     | p 16 | v 12  | t 12  [| byte 6 [| byte 7]]
 // The drive applies  torque = kp (p - angle) + kd (v - speed) + t.
 //
-// Codes truncate, as the drive firmware does: code = floor((x - low) (2^n - 1) / (high - low) + 2^-16)
-// after clamping x to [low, high]. The 2^-16 of a code only absorbs the rounding of decode: every code
-// survives decode and encode. So a decoded value is at most one step below what was asked, and zero,
-// which lies between two codes of the symmetric fields, becomes 0x7FF (0x7FFF), half a step below zero.
-// A limp drive is therefore asked for kp = kd = t = 0 and still feels half a torque step (4.4 mN m at
-// +-18 N m); no command can say exactly zero.
+// Codes truncate, as the drive firmware does: code = floor((x - low) (2^n - 1) / (high - low) +
+// 2^-16) after clamping x to [low, high]. The 2^-16 of a code only absorbs the rounding of decode:
+// every code survives decode and encode. So a decoded value is at most one step below what was
+// asked, and zero, which lies between two codes of the symmetric fields, becomes 0x7FF (0x7FFF),
+// half a step below zero. A limp drive is therefore asked for kp = kd = t = 0 and still feels half
+// a torque step (4.4 mN m at +-18 N m); no command can say exactly zero.
 //
 // All functions: no state, at most a few hundred cycles.
 #pragma once
@@ -52,8 +52,8 @@ struct DriveCommand {
 using CommandBytes = std::array<std::uint8_t, kCommandBytes>;
 
 // What a frame addressed to a drive asks for. The special ones are seven bytes 0xFF and a last byte
-// 0xFC (enter motor mode; also harmless way to ask for a reply), 0xFD (exit), 0xFE (make the present
-// angle zero: honoured out of motor mode only, writes flash, blocks the drive for up to 1 s).
+// 0xFC (enter motor mode; also harmless way to ask for a reply), 0xFD (exit), 0xFE (make the
+// present angle zero: honoured out of motor mode only, writes flash, blocks the drive up to 1 s).
 enum class FrameKind : std::uint8_t { kCommand, kEnterMotorMode, kExitMotorMode, kSetZero };
 
 // kInvalid: not 8 bytes.
@@ -62,8 +62,8 @@ Result<FrameKind> classify(std::span<const std::uint8_t> bytes);
 // The bytes of a special frame. kCommand is a programmer's error.
 CommandBytes encode_special(FrameKind kind);
 
-// Values beyond the ranges are clamped. A fully saturated command would read as a special frame: its
-// kd is lowered by one code (0.02 % of the range), so no command ever aliases one.
+// Values beyond the ranges are clamped. A fully saturated command would read as a special frame:
+// its kd is lowered by one code (0.02 % of the range), so no command ever aliases one.
 // kInvalid: a value is not finite or a range is not valid; out unchanged.
 Status encode_command(const WireRanges& ranges, const DriveCommand& command, CommandBytes& out);
 

@@ -13,8 +13,7 @@ std::uint8_t bus_of(const BusNames& names, std::string_view interface_name) {
 
 }  // namespace
 
-CandumpReader::CandumpReader(std::istream& in, BusNames names)
-    : in_(in), names_(std::move(names)) {
+CandumpReader::CandumpReader(std::istream& in, BusNames names) : in_(in), names_(std::move(names)) {
   issues_.reserve(kMaxIssues);
 }
 

@@ -1,13 +1,13 @@
 // One line of `candump -L` text (can-utils): `(seconds.microseconds) interface ID#DATA`.
 //
 //   ID        3 hex digits: 11-bit id; 8: 29-bit id, or, with bit 29 set (20000000), an error frame
-//   #DATA     0..8 bytes as pairs of hex digits; after 8 bytes `_9` .. `_F` may state a raw length code
+//   #DATA     0..8 bytes as pairs of hex digits; then `_9` .. `_F` may state a raw length code
 //   #R, #R0 .. #R8   remote frame asking for so many bytes
 //   ##F DATA  FD frame: one hex digit of flags (1 bit-rate switch, 2 error state, 4 FD), then
 //             0..8, 12, 16, 20, 24, 32, 48 or 64 bytes without a space
 //
-// Also read: nanoseconds (9 digits, `candump -N`), lower case, a final ` R` or ` T` (direction, `-x`),
-// CR before the end of the line. Not kept: FD error state, raw length code, direction.
+// Also read: nanoseconds (9 digits, `candump -N`), lower case, a final ` R` or ` T` (direction,
+// `-x`), CR before the end of the line. Not kept: FD error state, raw length code, direction.
 // Nothing here allocates or depends on the locale.
 #pragma once
 
@@ -35,7 +35,7 @@ enum class CandumpFault : std::uint8_t {
 const char* to_string(CandumpFault fault);
 
 struct CandumpEntry {
-  CanFrame frame;  // its stamp is the line's time; its bus is 0: the interface name decides
+  CanFrame frame;       // its stamp is the line's time; its bus is 0: the interface name decides
   bool remote = false;  // size is the number of bytes asked for; data is zero
   std::string_view interface_name;
 };
@@ -43,8 +43,8 @@ struct CandumpEntry {
 inline constexpr std::size_t kMaxInterfaceName = 15;  // IFNAMSIZ - 1
 inline constexpr std::size_t kMaxCandumpLine = 192;   // a 64-byte FD frame needs 183
 
-// On a fault `out` holds what was read up to there and must not be used. `interface_name` points into
-// `line`.
+// On a fault `out` holds what was read up to there and must not be used. `interface_name` points
+// into `line`.
 CandumpFault parse_candump_line(std::string_view line, CandumpEntry& out);
 
 // Writes the line without its end and returns its length; times are truncated to microseconds and

@@ -29,7 +29,8 @@ class FileCanLog {
   FileCanLog& operator=(const FileCanLog&) = delete;
 
   // `stamp` is the time of the line: frames that are sent carry none.
-  // kInvalid: not a frame or no such bus. kUnavailable: the storage failed, as every write after it.
+  // kInvalid: not a frame or no such bus. kUnavailable: the storage failed, as every write after
+  // it.
   Status write(const CanFrame& frame, TimeNs stamp);
   // Hands everything to the system. kUnavailable: the storage failed.
   Status flush();

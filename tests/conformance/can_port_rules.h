@@ -8,7 +8,7 @@
 //   CAN-COUNT     counters add up and never go back
 //   CAN-REFUSE    send of what is no frame: kInvalid, nothing sent
 //   CAN-NO-BUS    send to a bus that is not there: kUnavailable, counted as dropped
-//   CAN-SEND      every other send is kOk and counted, or refused with a documented code and counted
+//   CAN-SEND      every other send is kOk, or refused with a documented code; both are counted
 //
 // A recorded source has no bus to send on: the last three do not apply to it.
 #pragma once
@@ -26,8 +26,8 @@ class CanBench {
  public:
   virtual ~CanBench() = default;
   virtual hal::CanPort& port() = 0;
-  // Lets `count` frames arrive on the bus, in an order that number_of() can tell. Returns how many did
-  // (a recorded source may have fewer left).
+  // Lets `count` frames arrive on the bus, in an order that number_of() can tell. Returns how many
+  // did (a recorded source may have fewer left).
   virtual std::size_t arrive(std::uint8_t bus, std::size_t count) = 0;
   // Grows from frame to frame of one bus, or -1 where the backend's frames do not tell.
   virtual std::int64_t number_of(const hal::CanFrame&) const { return -1; }

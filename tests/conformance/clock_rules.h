@@ -14,9 +14,9 @@ namespace surefoot::conformance {
 
 struct ClockBench {
   hal::Clock* clock = nullptr;
-  TimeNs period;            // of the ticks waited for
-  int ticks = 20;           // to wait for; recorded sources may end earlier
-  TimeNs allowed_overshoot;  // of kOk beyond the deadline: scheduling on a busy host
+  TimeNs period;              // of the ticks waited for
+  int ticks = 20;             // to wait for; recorded sources may end earlier
+  TimeNs allowed_overshoot;   // of kOk beyond the deadline: scheduling on a busy host
   bool asks_for_late = true;  // false: a recorded source decides itself which ticks were late
 };
 

@@ -1,6 +1,6 @@
-// Small backends over queues: how a backend for a new device is written, and, with a defect switched
-// on, proof that the suites see one. A real backend differs in where push() is called from: a receiver
-// thread or an interrupt, through a lock-free ring.
+// Small backends over queues: how a backend for a new device is written, and, with a defect
+// switched on, proof that the suites see one. A real backend differs in where push() is called
+// from: a receiver thread or an interrupt, through a lock-free ring.
 #pragma once
 
 #include <algorithm>
@@ -17,29 +17,29 @@ namespace surefoot::conformance {
 
 enum class Defect : std::uint8_t {
   kNone,
-  kWritesWhenEmpty,      // touches the output without a sample
-  kIgnoresRoom,          // takes a sample off the queue though there is no room for it
+  kWritesWhenEmpty,  // touches the output without a sample
+  kIgnoresRoom,      // takes a sample off the queue though there is no room for it
   kNewestFirst,
-  kNotCounted,           // delivers without counting
-  kLosesSilently,        // a full queue is not counted
+  kNotCounted,     // delivers without counting
+  kLosesSilently,  // a full queue is not counted
   kDeliversTwice,
-  kBadForm,              // hands out what is out of its domain
+  kBadForm,  // hands out what is out of its domain
   kGapsUnseen,
-  kDropsAreGaps,         // what the full queue dropped is counted as lost before the host too
-  kDropsNewest,          // operator: keeps the oldest command
-  kAcceptsAnything,      // CAN: sends frames that are none
-  kNoBusCheck,           // CAN: sends to buses that are not there
-  kRefusesSilently,      // CAN: a full transmit queue is not counted
-  kDirtyPadding,         // CAN: bytes beyond the size are left over from before
-  kSwapsBuses,           // CAN: equal stamps in the wrong order
-  kIgnoresTrigger,       // stereo
-  kReturnsEarly,         // clock
-  kIgnoresLate,          // clock
-  kGoesBack,             // clock
-  kComesBackToLife,      // clock: goes on after its end
-  kKeepsReference,       // record: does not copy
-  kForgets,              // record: loses a message
-  kAllocates,            // record
+  kDropsAreGaps,     // what the full queue dropped is counted as lost before the host too
+  kDropsNewest,      // operator: keeps the oldest command
+  kAcceptsAnything,  // CAN: sends frames that are none
+  kNoBusCheck,       // CAN: sends to buses that are not there
+  kRefusesSilently,  // CAN: a full transmit queue is not counted
+  kDirtyPadding,     // CAN: bytes beyond the size are left over from before
+  kSwapsBuses,       // CAN: equal stamps in the wrong order
+  kIgnoresTrigger,   // stereo
+  kReturnsEarly,     // clock
+  kIgnoresLate,      // clock
+  kGoesBack,         // clock
+  kComesBackToLife,  // clock: goes on after its end
+  kKeepsReference,   // record: does not copy
+  kForgets,          // record: loses a message
+  kAllocates,        // record
 };
 
 // The queue behind every sensor port: bounded, the oldest gives way, nothing is lost silently.

@@ -94,9 +94,9 @@ class RecordSinkSuite {
   void check_stored() {
     const std::vector<StoredMessage> stored = bench_.stored();
     findings_.expect(!accepted_.empty(), "SINK-KEEP", "nothing was accepted");
-    findings_.expect(stored.size() == accepted_.size(), "SINK-KEEP",
-                     std::to_string(stored.size()) + " stored, not " +
-                         std::to_string(accepted_.size()));
+    findings_.expect(
+        stored.size() == accepted_.size(), "SINK-KEEP",
+        std::to_string(stored.size()) + " stored, not " + std::to_string(accepted_.size()));
     for (const hal::RecordChannel channel :
          {hal::RecordChannel::kConfiguration, kChannels[0], kChannels[1], kChannels[2]}) {
       compare(of_channel(accepted_, channel), of_channel(stored, channel));
@@ -105,9 +105,9 @@ class RecordSinkSuite {
 
   void compare(const std::vector<StoredMessage>& wanted, const std::vector<StoredMessage>& got) {
     for (std::size_t i = 0; i < wanted.size() && i < got.size(); ++i) {
-      const bool overwritten = !wanted[i].bytes.empty() && got[i].bytes.size() == wanted[i].bytes.size() &&
-                               got[i].bytes[0] == 0xEE && got[i].bytes.back() == 0xEE &&
-                               got[i].bytes != wanted[i].bytes;
+      const bool overwritten =
+          !wanted[i].bytes.empty() && got[i].bytes.size() == wanted[i].bytes.size() &&
+          got[i].bytes[0] == 0xEE && got[i].bytes.back() == 0xEE && got[i].bytes != wanted[i].bytes;
       findings_.expect(!overwritten, "SINK-COPY", "holds what the caller wrote afterwards");
       findings_.expect(overwritten || got[i] == wanted[i], "SINK-KEEP", "a message differs");
     }

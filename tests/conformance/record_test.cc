@@ -55,8 +55,7 @@ class WriterBench final : public RecordSinkBench {
     std::vector<StoredMessage> all;
     hal::RecordMessage message;
     while (ok(reader.next(message))) {
-      all.push_back(
-          {message.channel, message.stamp, {message.bytes.begin(), message.bytes.end()}});
+      all.push_back({message.channel, message.stamp, {message.bytes.begin(), message.bytes.end()}});
     }
     return all;
   }

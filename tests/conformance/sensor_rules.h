@@ -1,15 +1,15 @@
 // Rules that all sensor ports share, once for all backends.
 //
-// Ports that hand over lists (ImuPort, PosePort) and ports that hand over one frame (DepthCameraPort,
-// LidarPort, StereoCameraPort):
+// Ports that hand over lists (ImuPort, PosePort) and ports that hand over one frame
+// (DepthCameraPort, LidarPort, StereoCameraPort):
 //   SENSOR-EMPTY     nothing waiting (or no room): 0 or kUnavailable, nothing written, nothing lost
 //   SENSOR-BOUND     never more samples than asked for
 //   SENSOR-ORDER     oldest first: stamps and sequence numbers grow
 //   SENSOR-FORM      values are in their documented domain
 //   SENSOR-COMPLETE  whatever arrives is delivered or counted as dropped
 //   SENSOR-COUNT     delivered counts what was delivered, counters never go back
-//   SENSOR-GAP       sequence numbers missing before the host are counted as gaps, and only those: what
-//                    a full queue drops is counted once, as dropped
+//   SENSOR-GAP       sequence numbers missing before the host are counted as gaps, and only those:
+//                    what a full queue drops is counted once, as dropped
 // OperatorPort:
 //   OPERATOR-EMPTY, -FORM, -COUNT  as above
 //   OPERATOR-NEWEST  the newest command is delivered, once
@@ -221,8 +221,7 @@ class SensorSuite {
                      "losses before the host were counted as drops of the host");
   }
 
-  void check_trigger()
-    requires requires(Port& port) { port.trigger(); }
+  void check_trigger() requires requires(Port& port) { port.trigger(); }
   {
     drain(1);
     findings_.expect(ok(port_.trigger()), "STEREO-TRIGGER", "refused");

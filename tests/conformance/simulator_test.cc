@@ -48,7 +48,8 @@ class Stand {
 class SimCanBench final : public CanBench {
  public:
   hal::CanPort& port() override { return *stand_.board().can; }
-  // A drive answers every frame that is sent to it. A bus passes about four of these in a millisecond.
+  // A drive answers every frame that is sent to it. A bus passes about four of these in a
+  // millisecond.
   std::size_t arrive(std::uint8_t bus, std::size_t count) override {
     const actuation::CommandBytes poll =
         actuation::encode_special(actuation::FrameKind::kEnterMotorMode);

@@ -1,4 +1,5 @@
-// The suites themselves: they find nothing wrong with the queue backends, and they find every defect.
+// The suites themselves: they find nothing wrong with the queue backends, and they find every
+// defect.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,14 +69,13 @@ TEST_P(CanSuite, FindsTheDefect) {
 }
 INSTANTIATE_TEST_SUITE_P(
     Defects, CanSuite,
-    testing::Values(Case{Defect::kNone, ""}, Case{Defect::kWritesWhenEmpty, "CAN-EMPTY"},
-                    Case{Defect::kIgnoresRoom, "CAN-EMPTY"}, Case{Defect::kNewestFirst, "CAN-ORDER"},
-                    Case{Defect::kSwapsBuses, "CAN-ORDER"}, Case{Defect::kNotCounted, "CAN-COUNT"},
-                    Case{Defect::kLosesSilently, "CAN-COMPLETE"},
-                    Case{Defect::kDirtyPadding, "CAN-FORM"}, Case{Defect::kBadForm, "CAN-FORM"},
-                    Case{Defect::kAcceptsAnything, "CAN-REFUSE"},
-                    Case{Defect::kNoBusCheck, "CAN-NO-BUS"},
-                    Case{Defect::kRefusesSilently, "CAN-SEND"}));
+    testing::Values(
+        Case{Defect::kNone, ""}, Case{Defect::kWritesWhenEmpty, "CAN-EMPTY"},
+        Case{Defect::kIgnoresRoom, "CAN-EMPTY"}, Case{Defect::kNewestFirst, "CAN-ORDER"},
+        Case{Defect::kSwapsBuses, "CAN-ORDER"}, Case{Defect::kNotCounted, "CAN-COUNT"},
+        Case{Defect::kLosesSilently, "CAN-COMPLETE"}, Case{Defect::kDirtyPadding, "CAN-FORM"},
+        Case{Defect::kBadForm, "CAN-FORM"}, Case{Defect::kAcceptsAnything, "CAN-REFUSE"},
+        Case{Defect::kNoBusCheck, "CAN-NO-BUS"}, Case{Defect::kRefusesSilently, "CAN-SEND"}));
 
 // Samples that are in their domain, or just outside.
 void fill(hal::ImuSample& s, bool bad) { s.specific_force_I_m_s2[2] = bad ? NAN : 9.81; }
@@ -115,9 +115,7 @@ class QueueBench final : public Bench {
     sequence_ += static_cast<std::uint32_t>(count);
     return true;
   }
-  std::size_t capacity() const override {
-    return SampleQueue<typename Bench::Sample>::kCapacity;
-  }
+  std::size_t capacity() const override { return SampleQueue<typename Bench::Sample>::kCapacity; }
 
  private:
   Backend backend_;
@@ -170,22 +168,23 @@ TEST_P(OperatorSuite, FindsTheDefect) {
   QueueBench<QueueOperatorPort, OperatorBench> bench(GetParam().defect);
   expect_verdict(GetParam(), operator_violations(bench));
 }
-INSTANTIATE_TEST_SUITE_P(
-    Defects, OperatorSuite,
-    testing::Values(Case{Defect::kNone, ""}, Case{Defect::kWritesWhenEmpty, "OPERATOR-EMPTY"},
-                    Case{Defect::kDropsNewest, "OPERATOR-NEWEST"},
-                    Case{Defect::kDeliversTwice, "OPERATOR-NEWEST"},
-                    Case{Defect::kLosesSilently, "OPERATOR-DROPPED"},
-                    Case{Defect::kNotCounted, "OPERATOR-COUNT"},
-                    Case{Defect::kBadForm, "OPERATOR-FORM"}));
+INSTANTIATE_TEST_SUITE_P(Defects, OperatorSuite,
+                         testing::Values(Case{Defect::kNone, ""},
+                                         Case{Defect::kWritesWhenEmpty, "OPERATOR-EMPTY"},
+                                         Case{Defect::kDropsNewest, "OPERATOR-NEWEST"},
+                                         Case{Defect::kDeliversTwice, "OPERATOR-NEWEST"},
+                                         Case{Defect::kLosesSilently, "OPERATOR-DROPPED"},
+                                         Case{Defect::kNotCounted, "OPERATOR-COUNT"},
+                                         Case{Defect::kBadForm, "OPERATOR-FORM"}));
 
 class ClockSuite : public testing::TestWithParam<Case> {};
 TEST_P(ClockSuite, FindsTheDefect) {
-  const int ticks = GetParam().defect == Defect::kIgnoresLate ? 100 : 15;  // outlives the suite or not
+  const int ticks =
+      GetParam().defect == Defect::kIgnoresLate ? 100 : 15;  // outlives the suite or not
   SteppedClock clock(GetParam().defect, ticks);
-  expect_verdict(GetParam(), clock_violations({.clock = &clock,
-                                               .period = milliseconds(2),
-                                               .allowed_overshoot = {0}}));
+  expect_verdict(
+      GetParam(),
+      clock_violations({.clock = &clock, .period = milliseconds(2), .allowed_overshoot = {0}}));
 }
 INSTANTIATE_TEST_SUITE_P(Defects, ClockSuite,
                          testing::Values(Case{Defect::kNone, ""},
@@ -220,8 +219,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Case{Defect::kNone, ""}, Case{Defect::kKeepsReference, "SINK-COPY"},
                     Case{Defect::kForgets, "SINK-KEEP"}, Case{Defect::kNotCounted, "SINK-COUNT"},
                     Case{Defect::kLosesSilently, "SINK-COUNT"},
-                    Case{Defect::kBadForm, "SINK-STATUS"},
-                    Case{Defect::kAllocates, "SINK-HEAP"}));
+                    Case{Defect::kBadForm, "SINK-STATUS"}, Case{Defect::kAllocates, "SINK-HEAP"}));
 
 }  // namespace
 }  // namespace surefoot::conformance

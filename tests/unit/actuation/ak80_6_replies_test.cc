@@ -72,8 +72,8 @@ TEST_P(Ak80_6Replies, DecodeToTheLoggedValuesAndEncodeToTheSameBytes) {
     worst = std::max(worst, std::fabs(reply.value().velocity_rad_s - rows[i].velocity_rad_s));
     worst = std::max(worst, std::fabs(reply.value().torque_Nm - rows[i].torque_Nm));
     // And the simulated drive would have sent these very bytes.
-    const Result<ReplyBytes> again = encode_reply(
-        kAk80_6, {1, rows[i].position_rad, rows[i].velocity_rad_s, rows[i].torque_Nm});
+    const Result<ReplyBytes> again =
+        encode_reply(kAk80_6, {1, rows[i].position_rad, rows[i].velocity_rad_s, rows[i].torque_Nm});
     ASSERT_TRUE(again.ok());
     ASSERT_TRUE(std::equal(payloads[i].begin(), payloads[i].end(), again.value().bytes().begin(),
                            again.value().bytes().end()))

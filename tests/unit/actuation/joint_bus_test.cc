@@ -138,8 +138,8 @@ TEST_F(JointBusTest, JointCommandComesBackThroughTheWire) {
   }
 }
 
-// The belt neither makes nor eats power, and the drive's law, evaluated at the drive and brought back
-// to the joint, is the joint law that was asked for.
+// The belt neither makes nor eats power, and the drive's law, evaluated at the drive and brought
+// back to the joint, is the joint law that was asked for.
 TEST(JointBusPhysics, PowerIsTheSameOnBothSidesOfTheBelt) {
   Random random(6);
   for (int i = 0; i < 10'000; ++i) {
@@ -148,7 +148,8 @@ TEST(JointBusPhysics, PowerIsTheSameOnBothSidesOfTheBelt) {
     joint.velocity_rad_s = random.uniform(-20.0, 20.0);
     joint.torque_Nm = random.uniform(-20.0, 20.0);
     const DriveCommand drive = to_wire(joint, scale, 1.0);
-    EXPECT_NEAR(drive.torque_Nm * drive.velocity_rad_s, joint.torque_Nm * joint.velocity_rad_s, 1e-9);
+    EXPECT_NEAR(drive.torque_Nm * drive.velocity_rad_s, joint.torque_Nm * joint.velocity_rad_s,
+                1e-9);
   }
 }
 
@@ -165,8 +166,8 @@ TEST(JointBusPhysics, TheDriveLawIsTheJointLaw) {
     c.torque_Nm = random.uniform(-10.0, 10.0);
     const double q = random.uniform(-2.0, 2.0);
     const double qd = random.uniform(-10.0, 10.0);
-    const double joint_law = c.kp_Nm_rad * (c.position_rad - q) +
-                             c.kd_Nm_s_rad * (c.velocity_rad_s - qd) + c.torque_Nm;
+    const double joint_law =
+        c.kp_Nm_rad * (c.position_rad - q) + c.kd_Nm_s_rad * (c.velocity_rad_s - qd) + c.torque_Nm;
     const DriveCommand d = to_wire(c, scale, offset);
     const double drive_law = d.kp_Nm_rad * (d.position_rad - (scale * q + offset)) +
                              d.kd_Nm_s_rad * (d.velocity_rad_s - scale * qd) + d.torque_Nm;

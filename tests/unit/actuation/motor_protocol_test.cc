@@ -108,8 +108,8 @@ TEST(MotorProtocol, FieldsLieWhereTheFirmwareReadsThem) {
   EXPECT_EQ(torque, (CommandBytes{0x7F, 0xFF, 0x7F, 0xF0, 0x00, 0x00, 0x00, 0x00}));
 }
 
-// Truncation: the decoded value is the asked one or at most one step below, never above by more than
-// the guard.
+// Truncation: the decoded value is the asked one or at most one step below, never above by more
+// than the guard.
 TEST(MotorProtocol, CodesTruncate) {
   Random random(3);
   const double step = 36.0 / 4095.0;
@@ -169,8 +169,8 @@ TEST(MotorProtocol, NotFiniteIsRefusedAndNothingIsWritten) {
   }
 }
 
-// Special frames need seven bytes 0xFF, so p, v, kp and kd at their last code and t at 0xF00 or above.
-// Only t is free there: walking all of its codes walks every command that could alias.
+// Special frames need seven bytes 0xFF, so p, v, kp and kd at their last code and t at 0xF00 or
+// above. Only t is free there: walking all of its codes walks every command that could alias.
 TEST(MotorProtocol, NoSaturatedCommandAliasesASpecialFrame) {
   for (const WireRanges& r : kAllRanges) {
     int corrected = 0;
@@ -185,8 +185,8 @@ TEST(MotorProtocol, NoSaturatedCommandAliasesASpecialFrame) {
       EXPECT_DOUBLE_EQ(got.value().torque_Nm, torque);
       EXPECT_DOUBLE_EQ(got.value().position_rad, r.position_rad);
       const double step = r.kd_max_Nm_s_rad / 4095.0;
-      EXPECT_NEAR(got.value().kd_Nm_s_rad, t >= 0xF00 ? r.kd_max_Nm_s_rad - step : r.kd_max_Nm_s_rad,
-                  1e-12);
+      EXPECT_NEAR(got.value().kd_Nm_s_rad,
+                  t >= 0xF00 ? r.kd_max_Nm_s_rad - step : r.kd_max_Nm_s_rad, 1e-12);
       if (t >= 0xF00) ++corrected;
     }
     EXPECT_EQ(corrected, 256);
