@@ -184,8 +184,8 @@ void Simulator::Implementation::advance() {
   robot.apply(torques_Nm);
   if (trunk_force_N.squaredNorm() > 0) {
     const Vector3 p = robot.trunk_position_m();
-    dBodyAddForceAtPos(robot.body(0), trunk_force_N.x(), trunk_force_N.y(), trunk_force_N.z(), p.x(),
-                       p.y(), p.z());
+    dBodyAddForceAtPos(robot.body(0), trunk_force_N.x(), trunk_force_N.y(), trunk_force_N.z(),
+                       p.x(), p.y(), p.z());
   }
   contacts.collide();
   dWorldStep(ode.id(), step.seconds());
@@ -242,9 +242,8 @@ Truth Simulator::truth() const {
     foot.contact = contact.touching;
     foot.slip_speed_m_s = contact.touching ? contact.slip_velocity_m_s.norm() : 0.0;
     foot.slip_m = sim.slip_m[leg];
-    truth.leg_contact[leg] =
-        sim.contacts.shape(Contacts::shape_of(leg, Shape::kShank)).touching ||
-        sim.contacts.shape(Contacts::shape_of(leg, Shape::kThigh)).touching;
+    truth.leg_contact[leg] = sim.contacts.shape(Contacts::shape_of(leg, Shape::kShank)).touching ||
+                             sim.contacts.shape(Contacts::shape_of(leg, Shape::kThigh)).touching;
   }
   truth.trunk_contact = sim.contacts.shape(Contacts::kTrunk).touching;
   truth.mechanical_energy_J = robot.mechanical_energy_J(kGravity_m_s2);
@@ -278,8 +277,10 @@ TerrainFigures Simulator::terrain_figures() const {
       sum += height;
       squares += height * height;
       figures.max_height_m = std::max(figures.max_height_m, height);
-      if (i > 0) figures.max_step_m = std::max(figures.max_step_m, std::fabs(height - z[j * nx + i - 1]));
-      if (j > 0) figures.max_step_m = std::max(figures.max_step_m, std::fabs(height - z[(j - 1) * nx + i]));
+      if (i > 0)
+        figures.max_step_m = std::max(figures.max_step_m, std::fabs(height - z[j * nx + i - 1]));
+      if (j > 0)
+        figures.max_step_m = std::max(figures.max_step_m, std::fabs(height - z[(j - 1) * nx + i]));
     }
   }
   const auto count = static_cast<double>(nx * ny);

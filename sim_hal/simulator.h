@@ -32,12 +32,12 @@ struct JointTruth {
 };
 
 struct FootTruth {
-  std::array<double, 3> p_WF_m{};      // centre of the foot sphere
+  std::array<double, 3> p_WF_m{};  // centre of the foot sphere
   std::array<double, 3> v_WF_m_s{};
-  std::array<double, 3> force_W_N{};   // ground on foot, mean over the last physics step
+  std::array<double, 3> force_W_N{};  // ground on foot, mean over the last physics step
   bool contact = false;
-  double slip_speed_m_s = 0;           // of the sphere's lowest surface along the ground, in contact
-  double slip_m = 0;                   // path slipped since the start
+  double slip_speed_m_s = 0;  // of the sphere's lowest surface along the ground, in contact
+  double slip_m = 0;          // path slipped since the start
 };
 
 // What only the simulator knows. For summaries, pictures and tests; never an input of core.
@@ -45,13 +45,13 @@ struct Truth {
   TimeNs stamp;
   std::array<double, 3> p_WB_m{};
   std::array<double, 4> q_WB_wxyz{1, 0, 0, 0};
-  std::array<double, 3> v_WB_m_s{};               // of B's origin, axes of W
+  std::array<double, 3> v_WB_m_s{};  // of B's origin, axes of W
   std::array<double, 3> angular_velocity_B_rad_s{};
   std::array<JointTruth, robot::kJoints> joints;
   std::array<FootTruth, robot::kLegs> feet;
-  bool trunk_contact = false;                     // the trunk's box touches the ground
-  std::array<bool, robot::kLegs> leg_contact{};   // thigh or shank touches the ground
-  double mechanical_energy_J = 0;                 // kinetic (armature included) + potential
+  bool trunk_contact = false;                    // the trunk's box touches the ground
+  std::array<bool, robot::kLegs> leg_contact{};  // thigh or shank touches the ground
+  double mechanical_energy_J = 0;                // kinetic (armature included) + potential
 };
 
 // Heights on a 1 cm raster of the lane, x in [0, goal], |y| <= half the lane width.
@@ -59,7 +59,7 @@ struct TerrainFigures {
   double max_step_m = 0;  // greatest height difference between neighbouring samples
   double rms_m = 0;       // about the mean height
   double max_height_m = 0;
-  double cover = 0;       // part of the field (clutter) under boxes
+  double cover = 0;  // part of the field (clutter) under boxes
   std::uint32_t boxes = 0;
   std::uint32_t bridged_cells = 0;  // heightmap: nodata cells filled by their lowest neighbour
   std::uint32_t tiles = 1;          // heightmap: copies, mirrored, needed to cover the lane
@@ -89,8 +89,8 @@ class Simulator {
   Simulator(const Simulator&) = delete;
   Simulator& operator=(const Simulator&) = delete;
 
-  // clock, can, imu and depth_camera are set; the rest is null. clock->wait_until(t) steps the physics
-  // until now() >= t. The ports live as long as the simulator.
+  // clock, can, imu and depth_camera are set; the rest is null. clock->wait_until(t) steps the
+  // physics until now() >= t. The ports live as long as the simulator.
   hal::Board board();
 
   Truth truth() const;

@@ -25,8 +25,8 @@ struct PhysicsConfig {
   }
 };
 
-// White noise of density d gives samples of deviation d * sqrt(rate). Biases start at a normal draw of
-// the stated deviation and then walk.
+// White noise of density d gives samples of deviation d * sqrt(rate). Biases start at a normal draw
+// of the stated deviation and then walk.
 struct ImuNoiseConfig {
   double gyro_noise_rad_s_rtHz = 0;
   double gyro_bias_rad_s = 0;
@@ -39,7 +39,8 @@ struct ImuNoiseConfig {
   static void describe(Self& self, Visitor& visit) {
     visit.real("gyro_noise_rad_s_rtHz", self.gyro_noise_rad_s_rtHz, {0.0, 0.1}, "density");
     visit.real("gyro_bias_rad_s", self.gyro_bias_rad_s, {0.0, 0.5}, "one sigma at start");
-    visit.real("gyro_bias_walk_rad_s2_rtHz", self.gyro_bias_walk_rad_s2_rtHz, {0.0, 0.1}, "density");
+    visit.real("gyro_bias_walk_rad_s2_rtHz", self.gyro_bias_walk_rad_s2_rtHz, {0.0, 0.1},
+               "density");
     visit.real("accelerometer_noise_m_s2_rtHz", self.accelerometer_noise_m_s2_rtHz, {0.0, 1.0},
                "density");
     visit.real("accelerometer_bias_m_s2", self.accelerometer_bias_m_s2, {0.0, 2.0},
@@ -50,10 +51,10 @@ struct ImuNoiseConfig {
 };
 
 struct DepthNoiseConfig {
-  double latency_s = 0;              // from exposure to delivery
-  double edge_dropout = 0;           // probability at a pixel beside a depth discontinuity
-  double random_dropout = 0;         // probability anywhere else
-  double correlated_part = 0;        // share of the disparity variance common to a 4 x 4 patch
+  double latency_s = 0;        // from exposure to delivery
+  double edge_dropout = 0;     // probability at a pixel beside a depth discontinuity
+  double random_dropout = 0;   // probability anywhere else
+  double correlated_part = 0;  // share of the disparity variance common to a 4 x 4 patch
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -66,12 +67,12 @@ struct DepthNoiseConfig {
 };
 
 struct CanConfig {
-  double frame_time_s = 0.00012;       // one frame on the wire; commands and replies share the bus
-  double reply_loss = 0;               // probability that a reply never arrives
-  std::uint8_t reply_size = 8;         // 6 (original), 7 (motorcontrol v2) or 8 (CubeMars)
-  std::uint16_t reply_id = 0;          // CAN id of every reply; byte 0 names the drive
-  double encoder_noise_rad = 0;        // at the drive output, one sigma
-  double velocity_noise_rad_s = 0;     // at the drive output, one sigma
+  double frame_time_s = 0.00012;    // one frame on the wire; commands and replies share the bus
+  double reply_loss = 0;            // probability that a reply never arrives
+  std::uint8_t reply_size = 8;      // 6 (original), 7 (motorcontrol v2) or 8 (CubeMars)
+  std::uint16_t reply_id = 0;       // CAN id of every reply; byte 0 names the drive
+  double encoder_noise_rad = 0;     // at the drive output, one sigma
+  double velocity_noise_rad_s = 0;  // at the drive output, one sigma
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -86,11 +87,11 @@ struct CanConfig {
 
 // Faults injected on purpose. Times are simulated time; a period with end <= begin never happens.
 struct FaultConfig {
-  std::int32_t silent_joint = -1;      // this drive stops answering and goes limp; -1: none
+  std::int32_t silent_joint = -1;  // this drive stops answering and goes limp; -1: none
   double silent_from_s = 0;
-  double camera_off_from_s = 0;        // exposures in [from, until) are lost
+  double camera_off_from_s = 0;  // exposures in [from, until) are lost
   double camera_off_until_s = 0;
-  double imu_off_from_s = 0;           // samples in [from, until) are lost
+  double imu_off_from_s = 0;  // samples in [from, until) are lost
   double imu_off_until_s = 0;
 
   template <class Self, class Visitor>

@@ -104,8 +104,8 @@ Articulation::Articulation(dWorldID world, const robot::RobotModel& model, const
     body = dBodyCreate(world);
     dBodySetAutoDisableFlag(body, 0);
     // ODE's own gyroscopic term is implicit for the body as if it were free. The shank, with 6e-6
-    // kg m^2 about its long axis and the knee's armature across, lost 2.4 J in 3 s of passive swing to
-    // it at any step length; apply() adds the explicit term instead (drift: 5 mJ).
+    // kg m^2 about its long axis and the knee's armature across, lost 2.4 J in 3 s of passive swing
+    // to it at any step length; apply() adds the explicit term instead (drift: 5 mJ).
     dBodySetGyroscopicMode(body, 0);
   }
   build_trunk();
@@ -144,9 +144,10 @@ void Articulation::build_trunk() {
   set_rotation(bodies_[0], Matrix3::Identity());
 }
 
-// Built with all joint angles zero. The hip's rotor sits in the abad link at the hip joint, the knee's
-// in the thigh at the hip joint (coaxial drives). Each link carries its own motor's reflected inertia
-// about its joint axis: ODE has no armature, and without it explicit joint control diverges.
+// Built with all joint angles zero. The hip's rotor sits in the abad link at the hip joint, the
+// knee's in the thigh at the hip joint (coaxial drives). Each link carries its own motor's
+// reflected inertia about its joint axis: ODE has no armature, and without it explicit joint
+// control diverges.
 void Articulation::build_leg(dWorldID world, std::size_t leg) {
   const double side = robot::left_sign(leg);
   const Vector3 abad_W = robot::abduction_joint_B_m(model_, leg);
@@ -262,8 +263,8 @@ void Articulation::apply(const std::array<double, robot::kJoints>& motor_torque_
         std::max(0.1, 2.0 * actuator.dry_friction_Nm * step_s_ / axis_inertia_[joint]);
     const double friction = -actuator.dry_friction_Nm * std::tanh(qd / rounding_rad_s) -
                             actuator.viscous_friction_Nm_s * qd;
-    const double stop = stop_torque(q, qd, actuator.min_rad, actuator.max_rad,
-                                    axis_inertia_[joint], step_s_);
+    const double stop =
+        stop_torque(q, qd, actuator.min_rad, actuator.max_rad, axis_inertia_[joint], step_s_);
     dJointAddHingeTorque(hinges_[joint], motor_torque_Nm[joint] + friction + stop);
   }
 }

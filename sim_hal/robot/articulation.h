@@ -1,6 +1,6 @@
-// The robot as 13 ODE bodies and 12 hinges. Bodies: 0 trunk, then per leg (FR, FL, HR, HL) abad, thigh,
-// shank. ODE keeps a body's origin at its centre of mass; this class speaks of link frames, whose
-// origins are the joints (robot_model.h).
+// The robot as 13 ODE bodies and 12 hinges. Bodies: 0 trunk, then per leg (FR, FL, HR, HL) abad,
+// thigh, shank. ODE keeps a body's origin at its centre of mass; this class speaks of link frames,
+// whose origins are the joints (robot_model.h).
 #pragma once
 
 #include <ode/ode.h>
@@ -28,7 +28,8 @@ class Articulation {
  public:
   // Builds the robot upright over W's origin, its lowest point start.drop_height_m above z = 0. The
   // start pose's abduction angle is mirrored on the right: positive spreads the feet.
-  Articulation(dWorldID world, const robot::RobotModel& model, const StartPose& start, double step_s);
+  Articulation(dWorldID world, const robot::RobotModel& model, const StartPose& start,
+               double step_s);
   Articulation(const Articulation&) = delete;
   Articulation& operator=(const Articulation&) = delete;
 
@@ -72,8 +73,8 @@ class Articulation {
   double step_s_;
   std::array<dBodyID, kBodies> bodies_{};
   std::array<dJointID, robot::kJoints> hinges_{};
-  std::array<Vector3, kBodies> centres_;        // centre of mass in the link frame
-  std::array<Matrix3, kBodies> link_inertias_;  // about the centre of mass, without armature
+  std::array<Vector3, kBodies> centres_;               // centre of mass in the link frame
+  std::array<Matrix3, kBodies> link_inertias_;         // about the centre of mass, without armature
   std::array<double, robot::kJoints> axis_inertia_{};  // about the joint axis, child link alone
   std::array<double, robot::kJoints> positions_{};
   std::array<double, robot::kJoints> velocities_{};

@@ -65,8 +65,8 @@ void Contacts::make_shapes(const Articulation& robot) {
     place_capsule(lower, 0.5 * foot_m - robot.centre_of_mass_m(shank));
     const dGeomID upper = dCreateCapsule(nullptr, model.thigh_radius_m, model.thigh_length_m);
     dGeomSetBody(upper, robot.body(thigh));
-    place_capsule(upper, Vector3(0, knee_y, -0.5 * model.thigh_length_m) -
-                             robot.centre_of_mass_m(thigh));
+    place_capsule(upper,
+                  Vector3(0, knee_y, -0.5 * model.thigh_length_m) - robot.centre_of_mass_m(thigh));
     geoms_[shape_of(leg, Shape::kFoot)] = foot;
     geoms_[shape_of(leg, Shape::kShank)] = lower;
     geoms_[shape_of(leg, Shape::kThigh)] = upper;
@@ -77,8 +77,7 @@ void Contacts::make_terrain(const Terrain& terrain) {
   plane_ = dCreatePlane(nullptr, 0, 0, 1, 0);
   for (const TerrainBox& box : terrain.boxes) {
     const double height = box.top_m - box.bottom_m;
-    const dGeomID geom =
-        dCreateBox(nullptr, 2 * box.half_length_m, 2 * box.half_width_m, height);
+    const dGeomID geom = dCreateBox(nullptr, 2 * box.half_length_m, 2 * box.half_width_m, height);
     dMatrix3 r{};
     dRFromAxisAndAngle(r, 0, 0, 1, std::atan2(box.sin_yaw, box.cos_yaw));
     dGeomSetRotation(geom, r);
@@ -115,7 +114,8 @@ void Contacts::collide_shape(std::size_t shape) {
 
 void Contacts::collide_pair(std::size_t shape, dGeomID ground) {
   std::array<dContactGeom, kMaxPerPair> found;
-  const int count = dCollide(geoms_[shape], ground, kMaxPerPair, found.data(), sizeof(dContactGeom));
+  const int count =
+      dCollide(geoms_[shape], ground, kMaxPerPair, found.data(), sizeof(dContactGeom));
   for (int i = 0; i < count; ++i) add(shape, found[static_cast<std::size_t>(i)]);
 }
 
@@ -131,9 +131,10 @@ void Contacts::collide_grid(std::size_t shape) {
       const double x = 0.5 * size[0] * (k % 3 - 1);
       const double y = 0.5 * size[1] * (k / 3 % 3 - 1);
       const double z = 0.5 * size[2] * (k / 9 - 1);
-      touch_grid(shape, centre + Vector3(r[0] * x + r[1] * y + r[2] * z,
-                                         r[4] * x + r[5] * y + r[6] * z,
-                                         r[8] * x + r[9] * y + r[10] * z), 0.0);
+      touch_grid(shape,
+                 centre + Vector3(r[0] * x + r[1] * y + r[2] * z, r[4] * x + r[5] * y + r[6] * z,
+                                  r[8] * x + r[9] * y + r[10] * z),
+                 0.0);
     }
     return;
   }
@@ -188,7 +189,8 @@ void Contacts::add(std::size_t shape, const dContactGeom& geometry) {
   along.normalize();
   dContact contact{};
   contact.geom = geometry;
-  contact.surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactFDir1 | dContactMu2;
+  contact.surface.mode =
+      dContactApprox1 | dContactSoftERP | dContactSoftCFM | dContactFDir1 | dContactMu2;
   contact.surface.mu = friction_;
   contact.surface.mu2 = slipping ? kAcross * friction_ : friction_;
   contact.surface.soft_erp = config_.contact_erp;

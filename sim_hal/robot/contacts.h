@@ -1,8 +1,10 @@
-// Contact between the robot's collision shapes and the ground: foot spheres, shank and thigh capsules,
-// trunk box, against plane, boxes (ODE's collider) and grid of heights (grid_contacts.h). The robot does not collide with itself.
+// Contact between the robot's collision shapes and the ground: foot spheres, shank and thigh
+// capsules, trunk box, against plane, boxes (ODE's collider) and grid of heights (grid_contacts.h).
+// The robot does not collide with itself.
 //
-// Friction is Coulomb's cone as far as ODE's pyramid can: one side of the pyramid follows the slip, or,
-// while a contact sticks, its last tangential force. README.md "Friction" has the measured figures.
+// Friction is Coulomb's cone as far as ODE's pyramid can: one side of the pyramid follows the slip,
+// or, while a contact sticks, its last tangential force. README.md "Friction" has the measured
+// figures.
 #pragma once
 
 #include <ode/ode.h>

@@ -28,9 +28,7 @@ bool Drive::receive(std::span<const std::uint8_t> bytes, TimeNs now) {
       if (!motor_mode_) command_ = {};
       motor_mode_ = true;
       return true;
-    case actuation::FrameKind::kExitMotorMode:
-      motor_mode_ = false;
-      return true;
+    case actuation::FrameKind::kExitMotorMode: motor_mode_ = false; return true;
     case actuation::FrameKind::kSetZero:
       if (!motor_mode_) {  // as motorcontrol v2: only at rest
         zero_rad_ += position_rad_;

@@ -1,5 +1,6 @@
-// One motor drive of the MIT Mini-Cheetah kind, seen from the bus: the firmware's modes, control law and
-// time-out. All quantities at the drive's output shaft; JointWiring turns them into joint quantities.
+// One motor drive of the MIT Mini-Cheetah kind, seen from the bus: the firmware's modes, control
+// law and time-out. All quantities at the drive's output shaft; JointWiring turns them into joint
+// quantities.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +21,8 @@ class Drive {
   void sense(double joint_position_rad, double joint_velocity_rad_s);
   // A frame addressed to this drive. False: not understood, ignored by the firmware.
   bool receive(std::span<const std::uint8_t> bytes, TimeNs now);
-  // Torque at the joint for the next physics step: control law, firmware range, torque limit and the
-  // torque-speed line. Zero out of motor mode and after the time-out.
+  // Torque at the joint for the next physics step: control law, firmware range, torque limit and
+  // the torque-speed line. Zero out of motor mode and after the time-out.
   double joint_torque_Nm(TimeNs now);
   // The answer to a frame. Noise is added to angle and speed before they are coded.
   actuation::ReplyBytes reply(std::uint8_t size, double position_noise_rad,

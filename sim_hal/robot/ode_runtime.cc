@@ -48,7 +48,7 @@ bool initialise() {
 void start_ode() {
   static const bool double_precision = initialise();
   if (!double_precision) throw SimulatorError("ODE is not built for double precision");
-  dAllocateODEDataForThread(dAllocateMaskAll);
+  dAllocateODEDataForThread(static_cast<unsigned int>(dAllocateMaskAll));
 }
 
 std::uint64_t ode_messages() { return message_count().load(); }

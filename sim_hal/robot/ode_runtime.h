@@ -5,8 +5,8 @@
 
 namespace surefoot::sim {
 
-// Initialises ODE on the first call; later calls only make sure that this thread has its data. Throws
-// SimulatorError when ODE is not double precision.
+// Initialises ODE on the first call; later calls only make sure that this thread has its data.
+// Throws SimulatorError when ODE is not double precision.
 void start_ode();
 
 // Warnings ODE has reported in this process so far. Its errors stop the program.

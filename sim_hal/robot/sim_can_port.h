@@ -1,5 +1,6 @@
-// The four simulated CAN buses with the drives on them. A frame takes frame_time on its bus; a command
-// reaches its drive when it is through, the reply follows at once, one per frame, as the firmware does.
+// The four simulated CAN buses with the drives on them. A frame takes frame_time on its bus; a
+// command reaches its drive when it is through, the reply follows at once, one per frame, as the
+// firmware does.
 #pragma once
 
 #include <array>
@@ -23,8 +24,8 @@ class SimCanPort final : public hal::CanPort {
   SimCanPort(const robot::RobotModel& model, const CanConfig& config, const FaultConfig& faults,
              std::uint64_t seed);
 
-  // Brings the buses up to `now`: frames that are through reach their drives, which see the joints as
-  // they are now.
+  // Brings the buses up to `now`: frames that are through reach their drives, which see the joints
+  // as they are now.
   void advance(TimeNs now, const std::array<double, robot::kJoints>& positions_rad,
                const std::array<double, robot::kJoints>& velocities_rad_s);
   // Torques at the joints for the step that begins at `now`.

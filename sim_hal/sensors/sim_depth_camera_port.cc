@@ -36,8 +36,8 @@ double cast_cylinder(const Capsule& capsule, const Vector3& direction) {
   // |t d - a|^2 off the axis, times axis2.
   const double qa = axis2 * direction.squaredNorm() - direction_axis * direction_axis;
   const double qb = axis2 * direction.dot(capsule.a_m) - direction_axis * a_axis;
-  const double qc = axis2 * (capsule.a_m.squaredNorm() - capsule.radius_m * capsule.radius_m) -
-                    a_axis * a_axis;
+  const double qc =
+      axis2 * (capsule.a_m.squaredNorm() - capsule.radius_m * capsule.radius_m) - a_axis * a_axis;
   const double discriminant = qb * qb - qa * qc;
   if (discriminant < 0 || qa <= 0) return kNoHit;
   const double t = (qb - std::sqrt(discriminant)) / qa;
@@ -87,7 +87,8 @@ SimDepthCameraPort::SimDepthCameraPort(const robot::DepthCameraSpecification& sp
   Matrix3 rotation_XC;  // optical axes in the housing: right = -y, down = -z, forward = x
   rotation_XC << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   rotation_BC_ = mount_rotation(specification.mount) * rotation_XC;
-  const std::size_t pixels = static_cast<std::size_t>(specification.width_px) * specification.height_px;
+  const std::size_t pixels =
+      static_cast<std::size_t>(specification.width_px) * specification.height_px;
   exact_.assign(pixels, kNoHit);
   patches_wide_ = (specification.width_px + kPatch_px - 1) / kPatch_px;
   patches_.assign(patches_wide_ * ((specification.height_px + kPatch_px - 1) / kPatch_px), 0.0);
@@ -120,10 +121,14 @@ SimDepthCameraPort::Window SimDepthCameraPort::window_of(const Capsule& capsule)
   };
   const double fx = intrinsics_.fx_px;
   const double fy = intrinsics_.fy_px;
-  window.u0 = std::max(window.u0, static_cast<int>(std::floor(pixel(u_low, fx, intrinsics_.cx_px))));
-  window.u1 = std::min(window.u1, static_cast<int>(std::ceil(pixel(u_high, fx, intrinsics_.cx_px))));
-  window.v0 = std::max(window.v0, static_cast<int>(std::floor(pixel(v_low, fy, intrinsics_.cy_px))));
-  window.v1 = std::min(window.v1, static_cast<int>(std::ceil(pixel(v_high, fy, intrinsics_.cy_px))));
+  window.u0 =
+      std::max(window.u0, static_cast<int>(std::floor(pixel(u_low, fx, intrinsics_.cx_px))));
+  window.u1 =
+      std::min(window.u1, static_cast<int>(std::ceil(pixel(u_high, fx, intrinsics_.cx_px))));
+  window.v0 =
+      std::max(window.v0, static_cast<int>(std::floor(pixel(v_low, fy, intrinsics_.cy_px))));
+  window.v1 =
+      std::min(window.v1, static_cast<int>(std::ceil(pixel(v_high, fy, intrinsics_.cy_px))));
   return window;
 }
 
@@ -196,8 +201,7 @@ std::uint16_t SimDepthCameraPort::measure(std::size_t u, std::size_t v) {
 
 void SimDepthCameraPort::expose(TimeNs now, const Vector3& p_WB_m, const Matrix3& rotation_WB,
                                 std::span<const Capsule> robot_shapes_W) {
-  next_ = static_cast<std::uint64_t>(
-              std::floor(now.seconds() * specification_.rate_Hz + 1e-6)) + 1;
+  next_ = static_cast<std::uint64_t>(std::floor(now.seconds() * specification_.rate_Hz + 1e-6)) + 1;
   const std::uint32_t sequence = sequence_++;
   const double t = now.seconds();
   if (t >= faults_.camera_off_from_s && t < faults_.camera_off_until_s) {

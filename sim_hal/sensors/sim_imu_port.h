@@ -1,5 +1,5 @@
-// Simulated IMU. The gyroscope reads the angular velocity at the sample's stamp; the accelerometer the
-// mean specific force since the sample before, as a delta-velocity sensor does.
+// Simulated IMU. The gyroscope reads the angular velocity at the sample's stamp; the accelerometer
+// the mean specific force since the sample before, as a delta-velocity sensor does.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ class SimImuPort final : public hal::ImuPort {
   SimImuPort(const robot::ImuSpecification& specification, const ImuNoiseConfig& noise,
              const FaultConfig& faults, std::uint64_t seed);
 
-  // Once per physics step, after it: the mount's mean specific force during the step and the angular
-  // velocity at its end, both in B.
+  // Once per physics step, after it: the mount's mean specific force during the step and the
+  // angular velocity at its end, both in B.
   void advance(TimeNs now, double step_s, const Vector3& specific_force_B,
                const Vector3& angular_velocity_B);
 

@@ -167,8 +167,8 @@ double ramp(double x, double a, double b) { return std::clamp((x - a) / (b - a),
 }  // namespace
 
 // Along x: up over 0.4 m, twisting over 0.6 m into a side slope held for 0.3 m, twisting back, down
-// over 0.4 m; the rest level. All break lines lie on nodes. The twist itself slopes along x by
-// side * y / 0.6, so the side slope is drawn below steepest / sqrt(2): nothing inside the lane, where
+// over 0.4 m; the rest level. All break lines lie on nodes. The twist itself slopes along x by side
+// * y / 0.6, so the side slope is drawn below steepest / sqrt(2): nothing inside the lane, where
 // |y| <= 0.6, is steeper than slope_rad. Beyond the lane the ground goes on level across.
 void make_ramps(double slope_rad, Random& random, Terrain& terrain) {
   constexpr double kCell_m = 0.05;

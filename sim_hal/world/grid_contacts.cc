@@ -22,7 +22,8 @@ std::size_t first_cell(double offset_m, double cell_m) {
 }
 
 std::size_t end_cell(double offset_m, double cell_m, std::size_t nodes) {
-  const double end = std::clamp(std::floor(offset_m / cell_m) + 1, 0.0, static_cast<double>(nodes - 1));
+  const double end =
+      std::clamp(std::floor(offset_m / cell_m) + 1, 0.0, static_cast<double>(nodes - 1));
   return static_cast<std::size_t>(end);
 }
 
@@ -67,7 +68,8 @@ GridContact buried(const HeightGrid& grid, const Vector3& centre, double radius,
 
 }  // namespace
 
-Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
+Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b,
+                            const Vector3& c) {
   const Vector3 normal = (b - a).cross(c - a);
   const Vector3 foot = p - normal * (normal.dot(p - a) / normal.squaredNorm());
   const bool inside = normal.dot((b - a).cross(foot - a)) >= 0 &&
@@ -114,9 +116,9 @@ std::size_t sphere_on_grid(const HeightGrid& grid, const Vector3& centre_m, doub
   std::size_t count = 0;
   while (count < out.size()) {
     // The deepest left, ties by order; done when all left are shallower copies of kept ones.
-    const auto deepest = std::max_element(begin, end, [](const GridContact& a, const GridContact& b) {
-      return a.depth_m < b.depth_m;
-    });
+    const auto deepest = std::max_element(
+        begin, end,
+        [](const GridContact& a, const GridContact& b) { return a.depth_m < b.depth_m; });
     if (deepest == end || deepest->depth_m <= 0) break;
     out[count++] = *deepest;
     for (auto item = begin; item != end; ++item) {

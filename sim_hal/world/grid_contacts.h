@@ -1,6 +1,6 @@
 // Contacts of spheres with a grid of heights. ODE has a height field of its own, but it finds no
-// contacts at edges of single cells, and its work buffers keep allocating: it re-sorts planes whose lists
-// it grows one by one. This one touches faces, edges and corners alike and allocates nothing.
+// contacts at edges of single cells, and its work buffers keep allocating: it re-sorts planes whose
+// lists it grows one by one. This one touches faces, edges and corners alike and allocates nothing.
 #pragma once
 
 #include <cstddef>
@@ -20,9 +20,9 @@ struct GridContact {
 // The point of the triangle a, b, c nearest to p.
 Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c);
 
-// Deepest contact first; others only where their normals differ from all kept ones by over 20 degrees
-// (a foot in a notch). Returns how many, at most out.size(). A centre under the surface is pushed out
-// along the face above it. Cost: about 40 ns per triangle under the sphere.
+// Deepest contact first; others only where their normals differ from all kept ones by over 20
+// degrees (a foot in a notch). Returns how many, at most out.size(). A centre under the surface is
+// pushed out along the face above it. Cost: about 40 ns per triangle under the sphere.
 std::size_t sphere_on_grid(const HeightGrid& grid, const Vector3& centre_m, double radius_m,
                            std::span<GridContact> out);
 

@@ -97,8 +97,9 @@ void read_row(const std::string& file, std::size_t line, std::string_view text,
   for (std::size_t column = 0; column < map.columns; ++column) {
     const std::string_view word = next_word(text);
     if (word.empty()) {
-      fail(file, line, "row has " + std::to_string(column) + " values, ncols is " +
-                           std::to_string(map.columns));
+      fail(
+          file, line,
+          "row has " + std::to_string(column) + " values, ncols is " + std::to_string(map.columns));
     }
     const double value = number(file, line, word);
     const bool known = !header.nodata || value != *header.nodata;
@@ -168,8 +169,8 @@ RawHeightMap read_esri_ascii(const std::string& file) {
   }
   if (in_header) fail(file, line, "ends before the first row");
   if (row < map.rows) {
-    fail(file, line, "ends after " + std::to_string(row) + " rows, nrows is " +
-                         std::to_string(map.rows));
+    fail(file, line,
+         "ends after " + std::to_string(row) + " rows, nrows is " + std::to_string(map.rows));
   }
   check_some_known(file, map);
   return map;
@@ -223,7 +224,8 @@ RawHeightMap read_height_map(const std::string& file) {
 namespace {
 
 // Lowest known neighbour of eight; false when there is none.
-bool lowest_neighbour(const RawHeightMap& map, std::size_t row, std::size_t column, double& lowest) {
+bool lowest_neighbour(const RawHeightMap& map, std::size_t row, std::size_t column,
+                      double& lowest) {
   bool found = false;
   const std::size_t row_end = std::min(row + 2, map.rows);
   const std::size_t column_end = std::min(column + 2, map.columns);
@@ -292,10 +294,11 @@ void crop_to_known(RawHeightMap& map) {
   for (;;) {
     const bool rows_left = map.rows > kMinCells;
     const bool columns_left = map.columns > kMinCells;
-    const std::array<double, 4> known{rows_left ? known_part_of_row(map, 0) : 1.0,
-                                      rows_left ? known_part_of_row(map, map.rows - 1) : 1.0,
-                                      columns_left ? known_part_of_column(map, 0) : 1.0,
-                                      columns_left ? known_part_of_column(map, map.columns - 1) : 1.0};
+    const std::array<double, 4> known{
+        rows_left ? known_part_of_row(map, 0) : 1.0,
+        rows_left ? known_part_of_row(map, map.rows - 1) : 1.0,
+        columns_left ? known_part_of_column(map, 0) : 1.0,
+        columns_left ? known_part_of_column(map, map.columns - 1) : 1.0};
     const std::size_t side =
         static_cast<std::size_t>(std::min_element(known.begin(), known.end()) - known.begin());
     if (known[side] >= kEnough) return;

@@ -89,7 +89,8 @@ void make_height_map(const WorldSpec& spec, Terrain& terrain) {
   terrain.bridged_cells = bridge_unknown(raw);
   raw.cell_m *= spec.scale;
   for (double& z : raw.z_m) z *= spec.scale;
-  const auto block = static_cast<std::size_t>(std::max(1.0, std::ceil(kMinCell_m / raw.cell_m - 1e-9)));
+  const auto block =
+      static_cast<std::size_t>(std::max(1.0, std::ceil(kMinCell_m / raw.cell_m - 1e-9)));
   const RawHeightMap map = reduced(raw, block);
 
   HeightGrid& grid = terrain.grid;

@@ -98,7 +98,8 @@ struct TerrainIndex::Walk {
     }
   }
   bool inside(std::size_t nx, std::size_t ny) const {
-    return i >= 0 && j >= 0 && i < static_cast<std::int64_t>(nx) && j < static_cast<std::int64_t>(ny);
+    return i >= 0 && j >= 0 && i < static_cast<std::int64_t>(nx) &&
+           j < static_cast<std::int64_t>(ny);
   }
 };
 
@@ -242,7 +243,8 @@ double TerrainIndex::cast_boxes(const Cell& cell, const Vector3& origin,
 }
 
 // Follows the ray over the grid's cells between t0 and t1. Over one triangle the ray's height above
-// the ground is linear in t, so a change of sign between a triangle's borders gives the hit exactly.
+// the ground is linear in t, so a change of sign between a triangle's borders gives the hit
+// exactly.
 double TerrainIndex::cast_grid(const Vector3& origin, const Vector3& direction, double t0,
                                double t1) const {
   const HeightGrid& grid = terrain_.grid;
@@ -304,7 +306,8 @@ double TerrainIndex::cast(const Vector3& origin, const Vector3& direction, doubl
   const double miss = plane <= t_max ? plane : kNoHit;
   double t0 = 0;
   double t1 = end;
-  if (cells_.empty() || (terrain_.grid.empty() && !clip(origin.z(), direction.z(), 0.0, max_m_, t0, t1)) ||
+  if (cells_.empty() ||
+      (terrain_.grid.empty() && !clip(origin.z(), direction.z(), 0.0, max_m_, t0, t1)) ||
       !clip(origin.z(), direction.z(), -1e3, max_m_, t0, t1) ||
       !clip(origin.x(), direction.x(), x0_m_, x0_m_ + kCell_m * static_cast<double>(nx_), t0, t1) ||
       !clip(origin.y(), direction.y(), y0_m_, y0_m_ + kCell_m * static_cast<double>(ny_), t0, t1)) {
@@ -315,7 +318,8 @@ double TerrainIndex::cast(const Vector3& origin, const Vector3& direction, doubl
   double from = t0;
   while (walk.inside(nx_, ny_)) {
     const double until = std::min(walk.leave(), t1);
-    const Cell& cell = cells_[static_cast<std::size_t>(walk.j) * nx_ + static_cast<std::size_t>(walk.i)];
+    const Cell& cell =
+        cells_[static_cast<std::size_t>(walk.j) * nx_ + static_cast<std::size_t>(walk.i)];
     const double lowest = origin.z() + direction.z() * (direction.z() < 0 ? until : from);
     if (lowest <= cell.max_m) {
       double hit = cell.count > 0 ? cast_boxes(cell, origin, direction) : kNoHit;

@@ -1,5 +1,6 @@
-// A coarse raster over the terrain: which boxes may lie in a cell, and how high the ground gets there.
-// Serves contact search, height queries and rays. Built once; queries neither allocate nor change it.
+// A coarse raster over the terrain: which boxes may lie in a cell, and how high the ground gets
+// there. Serves contact search, height queries and rays. Built once; queries neither allocate nor
+// change it.
 #pragma once
 
 #include <cstddef>
@@ -30,8 +31,9 @@ class TerrainIndex {
   // out.size(); more are cut off.
   std::size_t boxes_near(double x0, double y0, double x1, double y1,
                          std::span<std::uint32_t> out) const;
-  // Smallest t in (0, t_max] at which origin + t * direction is on the ground's surface; kNoHit when
-  // none. The direction need not have unit length. Starting below the ground gives an arbitrary hit.
+  // Smallest t in (0, t_max] at which origin + t * direction is on the ground's surface; kNoHit
+  // when none. The direction need not have unit length. Starting below the ground gives an
+  // arbitrary hit.
   double cast(const Vector3& origin, const Vector3& direction, double t_max) const;
 
  private:

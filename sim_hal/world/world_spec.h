@@ -1,4 +1,5 @@
-// Which ground a run is made on. Plain data; the seed decides every draw (world/terrain.h builds it).
+// Which ground a run is made on. Plain data; the seed decides every draw (world/terrain.h builds
+// it).
 #pragma once
 
 #include <array>
@@ -14,16 +15,16 @@ enum class Generator : std::uint8_t { kFlat = 0, kSteps, kRamps, kClutter, kHeig
 inline constexpr std::array<const char*, 5> kGeneratorNames{"flat", "steps", "ramps", "clutter",
                                                             "heightmap"};
 
-// The world frame W has its origin on the ground under the robot's start, x towards the goal, y left,
-// z up. Every generated world keeps x < 0.4 m level at z = 0.
+// The world frame W has its origin on the ground under the robot's start, x towards the goal, y
+// left, z up. Every generated world keeps x < 0.4 m level at z = 0.
 struct WorldSpec {
   Generator generator = Generator::kFlat;
-  double height_m = 0;      // clutter: tallest box top; steps: tallest platform; unused otherwise
-  double cover = 0;         // clutter: fraction of the field under boxes
-  double slope_rad = 0;     // ramps: steepest slope
-  double scale = 1;         // heightmap: factor on x, y and z of the file
-  double friction = 0.6;    // Coulomb coefficient of the whole ground
-  std::string file;         // heightmap: .asc, or .png with a .yaml beside it; unused otherwise
+  double height_m = 0;    // clutter: tallest box top; steps: tallest platform; unused otherwise
+  double cover = 0;       // clutter: fraction of the field under boxes
+  double slope_rad = 0;   // ramps: steepest slope
+  double scale = 1;       // heightmap: factor on x, y and z of the file
+  double friction = 0.6;  // Coulomb coefficient of the whole ground
+  std::string file;       // heightmap: .asc, or .png with a .yaml beside it; unused otherwise
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {

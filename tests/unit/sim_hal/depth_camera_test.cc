@@ -24,7 +24,8 @@ WorldSpec clutter(double height_m) {
 
 // First t along a fine march at which the point is inside a box or under the ground, refined by
 // bisection: slow, and shares nothing with the code under test.
-double oracle(const Terrain& terrain, const Vector3& origin, const Vector3& direction, double t_max) {
+double oracle(const Terrain& terrain, const Vector3& origin, const Vector3& direction,
+              double t_max) {
   const auto inside = [&](double t) {
     const Vector3 p = origin + t * direction;
     const double ground =
@@ -110,12 +111,12 @@ TEST(Rays, AlongTheAxesAndGridLines) {
   terrain.boxes.push_back(box);
   const TerrainIndex index(terrain);
   EXPECT_DOUBLE_EQ(index.cast({0, 0, 0.05}, {1, 0, 0}, 5), 0.9);
-  EXPECT_DOUBLE_EQ(index.cast({0, 0.2, 0.05}, {1, 0, 0}, 5), 0.9);   // grazes the side
+  EXPECT_DOUBLE_EQ(index.cast({0, 0.2, 0.05}, {1, 0, 0}, 5), 0.9);  // grazes the side
   EXPECT_EQ(index.cast({0, 0.21, 0.05}, {1, 0, 0}, 5), kNoHit);
   EXPECT_EQ(index.cast({0, 0, 0.05}, {-1, 0, 0}, 5), kNoHit);
   EXPECT_DOUBLE_EQ(index.cast({1, 0, 0.5}, {0, 0, -1}, 5), 0.4);
   EXPECT_DOUBLE_EQ(index.cast({1.5, 0, 0.5}, {0, 0, -1}, 5), 0.5);
-  EXPECT_EQ(index.cast({1, 0, 0.5}, {0, 0, -1}, 0.3), kNoHit);       // out of range
+  EXPECT_EQ(index.cast({1, 0, 0.5}, {0, 0, -1}, 0.3), kNoHit);  // out of range
   EXPECT_EQ(index.cast({1, 0, 0.5}, {0, 0, 1}, 5), kNoHit);
 }
 
@@ -161,7 +162,9 @@ TEST(Rays, CapsuleAgreesWithItsDistanceField) {
 struct Scene {
   explicit Scene(const WorldSpec& world = {}, const DepthNoiseConfig& noise = {},
                  const FaultConfig& faults = {}, double disparity_noise_px = 0)
-      : specification(mini_cheetah().depth_camera), terrain(make_terrain(world, 1)), index(terrain) {
+      : specification(mini_cheetah().depth_camera),
+        terrain(make_terrain(world, 1)),
+        index(terrain) {
     specification.disparity_noise_px = disparity_noise_px;
     camera = std::make_unique<SimDepthCameraPort>(specification, noise, faults, index, 1);
   }

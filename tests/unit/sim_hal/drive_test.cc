@@ -62,10 +62,14 @@ TEST(SimCan, RepliesDecodeToTheTruth) {
     const actuation::Reply reply = reply_of(rig, rig.replies[i], joint);
     const robot::JointWiring& w = rig.model.wiring[joint];
     const double factor = w.direction * w.belt_ratio;
-    EXPECT_NEAR((reply.position_rad - w.offset_rad) / factor, truth.joints[joint].position_rad, 0.01);
+    EXPECT_NEAR((reply.position_rad - w.offset_rad) / factor, truth.joints[joint].position_rad,
+                0.01);
     EXPECT_NEAR(reply.velocity_rad_s / factor, truth.joints[joint].velocity_rad_s, 0.2);
     EXPECT_NEAR(reply.torque_Nm * factor, truth.joints[joint].motor_torque_Nm, 0.3);
-    EXPECT_NEAR(truth.joints[joint].position_rad, joint % 3 == 0 ? 0.1 : joint % 3 == 1 ? -0.5 : 0.9,
+    EXPECT_NEAR(truth.joints[joint].position_rad,
+                joint % 3 == 0   ? 0.1
+                : joint % 3 == 1 ? -0.5
+                                 : 0.9,
                 0.15);
   }
 }
@@ -79,7 +83,8 @@ TEST(SimCan, GoesLimpWhenCommandsStop) {
   double last_torque_s = 0;
   for (int us = 500; us <= 40'000; us += 500) {
     ASSERT_TRUE(ok(rig.board.clock->wait_until(rig.time + microseconds(us))));
-    if (std::fabs(rig.simulator->truth().joints[0].motor_torque_Nm) > 0.1) last_torque_s = us * 1e-6;
+    if (std::fabs(rig.simulator->truth().joints[0].motor_torque_Nm) > 0.1)
+      last_torque_s = us * 1e-6;
   }
   EXPECT_GE(last_torque_s, 0.0245);
   EXPECT_LE(last_torque_s, 0.0260);
@@ -203,8 +208,7 @@ TEST(Drive, BeltAndDirectionTurnTorqueAndAngle) {
     EXPECT_NEAR(drive.joint_torque_Nm({}), direction * 6.0, 0.02);
     drive.sense(0.5, 0.25);
     const actuation::WireRanges r = ranges(wiring(0, 0));
-    const actuation::Reply reply =
-        actuation::decode_reply(r, drive.reply(8, 0, 0).bytes()).value();
+    const actuation::Reply reply = actuation::decode_reply(r, drive.reply(8, 0, 0).bytes()).value();
     EXPECT_NEAR(reply.position_rad, direction * 1.0 + 0.3, 0.0005);
     EXPECT_NEAR(reply.velocity_rad_s, direction * 0.5, 0.04);
     EXPECT_NEAR(reply.torque_Nm, 3.0, 0.01);

@@ -19,8 +19,8 @@ class HeightMapFile : public testing::Test {
  protected:
   void SetUp() override {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("surefoot_sim_") + test->name());
+    folder_ =
+        std::filesystem::temp_directory_path() / (std::string("surefoot_sim_") + test->name());
     std::filesystem::create_directories(folder_);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -135,7 +135,8 @@ TEST_F(HeightMapFile, ReadsSixteenBitPngWithItsYaml) {
   EXPECT_THROW(read_height_map(file), SimulatorError);
 }
 
-// North (first row) is +y, east (last column) is +x: checked on a plane that rises to the north-east.
+// North (first row) is +y, east (last column) is +x: checked on a plane that rises to the
+// north-east.
 TEST_F(HeightMapFile, LiesTheRightWayRound) {
   std::string text = "ncols 60\nnrows 40\ncellsize 0.1\n";
   for (int row = 0; row < 40; ++row) {
@@ -160,7 +161,8 @@ TEST_F(HeightMapFile, FeetRestOnTheSurfaceTheRaysSee) {
   std::string text = "ncols 50\nnrows 30\ncellsize 0.1\n";
   Random random(3);
   for (int row = 0; row < 30; ++row) {
-    for (int column = 0; column < 50; ++column) text += std::to_string(random.uniform(0, 0.02)) + " ";
+    for (int column = 0; column < 50; ++column)
+      text += std::to_string(random.uniform(0, 0.02)) + " ";
     text += "\n";
   }
   WorldSpec world;
@@ -253,7 +255,8 @@ TEST(GridContacts, DepthAgreesWithADenseSearch) {
 
 TEST_F(HeightMapFile, ScalesMirrorsAndReportsWhatItInvented) {
   std::string text = "ncols 10\nnrows 10\ncellsize 0.5\nNODATA_value -9\n";
-  for (int i = 0; i < 100; ++i) text += (i == 55 ? "-9" : std::to_string(i % 7)) + (i % 10 == 9 ? "\n" : " ");
+  for (int i = 0; i < 100; ++i)
+    text += (i == 55 ? "-9" : std::to_string(i % 7)) + (i % 10 == 9 ? "\n" : " ");
   WorldSpec world;
   world.generator = Generator::kHeightMap;
   world.file = write("small.asc", text);

@@ -51,9 +51,11 @@ TEST(SimImu, AtRestReadsGravityInItsOwnAxes) {
   ASSERT_EQ(samples.size(), 200u);
   const Vector3 expected = mount_rotation(model.imu.mount).transpose() * Vector3(0, 0, 9.81);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto force = moments(samples, [&](const auto& s) { return s.specific_force_I_m_s2[axis]; });
+    const auto force =
+        moments(samples, [&](const auto& s) { return s.specific_force_I_m_s2[axis]; });
     EXPECT_NEAR(force.mean, expected[static_cast<Eigen::Index>(axis)], 0.01);
-    const auto rate = moments(samples, [&](const auto& s) { return s.angular_velocity_I_rad_s[axis]; });
+    const auto rate =
+        moments(samples, [&](const auto& s) { return s.angular_velocity_I_rad_s[axis]; });
     EXPECT_NEAR(rate.mean, 0, 0.001);
   }
   for (std::size_t i = 1; i < samples.size(); ++i) {
@@ -81,10 +83,12 @@ TEST(SimImu, NoiseHasTheStatedDensity) {
   const std::vector<hal::ImuSample> samples = collect(rig, 4.0);
   const double root_rate = std::sqrt(1000.0);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto rate = moments(samples, [&](const auto& s) { return s.angular_velocity_I_rad_s[axis]; });
+    const auto rate =
+        moments(samples, [&](const auto& s) { return s.angular_velocity_I_rad_s[axis]; });
     EXPECT_NEAR(rate.sigma, 0.001 * root_rate, 0.05 * 0.001 * root_rate);
     EXPECT_NEAR(rate.mean, 0, 4 * 0.001 * root_rate / std::sqrt(4000.0));
-    const auto force = moments(samples, [&](const auto& s) { return s.specific_force_I_m_s2[axis]; });
+    const auto force =
+        moments(samples, [&](const auto& s) { return s.specific_force_I_m_s2[axis]; });
     EXPECT_NEAR(force.sigma, 0.01 * root_rate, 0.05 * 0.01 * root_rate);
   }
 }

@@ -166,8 +166,9 @@ TEST(Physics, KickingInFreeFallKeepsTheAngularMomentum) {
 
 class Slip : public testing::TestWithParam<int> {};
 
-// Pushes a crouching robot with a horizontal force: below the friction cone it stays, above it goes, in
-// every direction alike. A square pyramid fixed in the world would hold 1.41 mu along its diagonals.
+// Pushes a crouching robot with a horizontal force: below the friction cone it stays, above it
+// goes, in every direction alike. A square pyramid fixed in the world would hold 1.41 mu along its
+// diagonals.
 TEST_P(Slip, BeginsAtTheConeInEveryDirection) {
   const double angle_rad = GetParam() * std::atan(1.0);
   WorldSpec world;

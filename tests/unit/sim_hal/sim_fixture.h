@@ -109,7 +109,8 @@ class Rig {
 
   explicit Rig(const WorldSpec& world = {}, const SimulatorConfig& config = {},
                std::uint64_t seed = 1, const robot::RobotModel& robot = mini_cheetah())
-      : model(robot), simulator(std::make_unique<Simulator>(robot, world, config, seed)),
+      : model(robot),
+        simulator(std::make_unique<Simulator>(robot, world, config, seed)),
         board(simulator->board()) {}
 
   void send_special(actuation::FrameKind kind) {
@@ -120,10 +121,9 @@ class Rig {
   void send(std::size_t joint, const JointGoal& goal) {
     const robot::JointWiring& w = model.wiring[joint];
     const double factor = w.direction * w.belt_ratio;
-    const actuation::DriveCommand command{factor * goal.position_rad + w.offset_rad, 0.0,
-                                          goal.kp_Nm_rad / (factor * factor),
-                                          goal.kd_Nm_s_rad / (factor * factor),
-                                          goal.torque_Nm / factor};
+    const actuation::DriveCommand command{
+        factor * goal.position_rad + w.offset_rad, 0.0, goal.kp_Nm_rad / (factor * factor),
+        goal.kd_Nm_s_rad / (factor * factor), goal.torque_Nm / factor};
     actuation::CommandBytes bytes{};
     accepted = ok(actuation::encode_command(ranges(w), command, bytes)) && accepted;
     accepted = ok(board.can->send(frame_for(w, bytes))) && accepted;
