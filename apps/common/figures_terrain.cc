@@ -188,19 +188,19 @@ FootholdCounts draw_footholds(Drawing& drawing, const std::vector<Touchdown>& to
         axes.contains(chosen[0], chosen[1]) && axes.contains(nominal[0], nominal[1]);
     const Point to = axes.at(chosen[0], chosen[1]);
     switch (touchdown.reason) {
-      case autonomy::FootholdReason::kMoved:
+      case control::FootholdReason::kMoved:
         ++counts.moved;
         if (!visible) break;
         drawing.line(axes.at(nominal[0], nominal[1]), to, {palette::kPaper, 1.4, false});
         drawing.ring(axes.at(nominal[0], nominal[1]), 2.6, {palette::kPaper, 1.2, false});
         drawing.dot(to, 3.2, palette::kRed);
         break;
-      case autonomy::FootholdReason::kNone:
+      case control::FootholdReason::kNone:
         ++counts.none;
         if (visible) drawing.ring(to, 4, {palette::kPurple, 2, false});
         break;
-      case autonomy::FootholdReason::kNominal:
-      case autonomy::FootholdReason::kMapOff:
+      case control::FootholdReason::kNominal:
+      case control::FootholdReason::kMapOff:
         ++counts.nominal;
         if (visible) drawing.dot(to, 2.2, palette::kPaper);
         break;

@@ -25,7 +25,7 @@ struct Touchdown {
   std::size_t leg = 0;
   std::array<double, 3> nominal_O_m{};
   std::array<double, 3> chosen_O_m{};
-  autonomy::FootholdReason reason = autonomy::FootholdReason::kNominal;
+  control::FootholdReason reason = control::FootholdReason::kNominal;
 };
 
 class RunLog {

@@ -91,8 +91,7 @@ void Autonomy::begin_walking(const estimation::RobotState& state) {
 
 void Autonomy::act(const estimation::RobotState& state) {
   switch (mission_.phase()) {
-    case MissionPhase::kEnableDrives:
-      break;
+    case MissionPhase::kEnableDrives: break;
     case MissionPhase::kStandUp:
       if (mission_.phase_changed()) stand_up_.start(bus_.states());
       commands_ = stand_up_.update(tick_s_);
@@ -101,12 +100,10 @@ void Autonomy::act(const estimation::RobotState& state) {
     case MissionPhase::kWalk:
     case MissionPhase::kArrived:
       if (!walking_ready_) begin_walking(state);
-      commands_ = locomotion_.update(state, window(), mission_.command(), mission_.stepping(),
-                                     tick_s_);
+      commands_ =
+          locomotion_.update(state, window(), mission_.command(), mission_.stepping(), tick_s_);
       break;
-    case MissionPhase::kStopped:
-      commands_ = bus_.damping_commands();
-      break;
+    case MissionPhase::kStopped: commands_ = bus_.damping_commands(); break;
   }
 }
 

@@ -18,7 +18,8 @@
 namespace surefoot::autonomy {
 
 inline constexpr TimeNs kTickPeriod = milliseconds(2);
-inline constexpr std::uint32_t kMapLatencyTicks = 5;  // 10 ms from a frame's arrival to its footholds
+inline constexpr std::uint32_t kMapLatencyTicks =
+    5;  // 10 ms from a frame's arrival to its footholds
 
 class Autonomy {
  public:
@@ -64,7 +65,7 @@ class Autonomy {
   control::StandUp stand_up_;
   control::Locomotion locomotion_;
   actuation::JointCommands commands_;
-  bool walking_ready_ = false;     // stand-up is over, O has its place
+  bool walking_ready_ = false;  // stand-up is over, O has its place
   double imu_silent_s_ = 0;
   double tick_s_ = 0;
   std::uint64_t imu_refused_ = 0;

@@ -11,10 +11,10 @@ namespace surefoot::autonomy {
 
 // What is limp, tilted or silent too long ends a mission with a reason instead of a broken robot.
 struct SafetyConfig {
-  double max_tilt_rad = 0;             // beyond: drives go to damping
-  double drive_silence_s = 0;          // no reply of a drive
-  double imu_silence_s = 0;            // no sample
-  double foothold_patience_s = 0;      // no foothold for a leg
+  double max_tilt_rad = 0;         // beyond: drives go to damping
+  double drive_silence_s = 0;      // no reply of a drive
+  double imu_silence_s = 0;        // no sample
+  double foothold_patience_s = 0;  // no foothold for a leg
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -44,17 +44,17 @@ struct MissionConfig {
   static constexpr const char* kKindNames[] = {"stand", "cross"};
 
   Kind kind = Kind::kStand;
-  double goal_x_m = 0;             // ahead of the start, along the start's heading
-  double goal_tolerance_m = 0;     // by the robot's own estimate
+  double goal_x_m = 0;          // ahead of the start, along the start's heading
+  double goal_tolerance_m = 0;  // by the robot's own estimate
   double speed_m_s = 0;
-  double line_gain_1_s = 0;        // back to the line from start to goal
+  double line_gain_1_s = 0;  // back to the line from start to goal
   double heading_gain_1_s = 0;
   double max_lateral_m_s = 0;
   double max_yaw_rate_rad_s = 0;
-  double rest_s = 0;               // lying still before standing up: the gyro's bias is learned
-  double settle_s = 0;             // standing still before the first step
-  double stand_s = 0;              // mission stand: how long
-  double timeout_s = 0;            // of the whole mission
+  double rest_s = 0;     // lying still before standing up: the gyro's bias is learned
+  double settle_s = 0;   // standing still before the first step
+  double stand_s = 0;    // mission stand: how long
+  double timeout_s = 0;  // of the whole mission
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {

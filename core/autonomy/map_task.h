@@ -55,7 +55,7 @@ class MapTask {
   mapping::Mapper mapper_;
   mapping::MapWindow working_;  // written by run()
   std::uint64_t working_digest_ = 0;
-  mapping::MapWindow window_;   // what control sees
+  mapping::MapWindow window_;  // what control sees
   std::uint64_t window_digest_ = 0;
 };
 

@@ -5,8 +5,8 @@
 namespace surefoot::autonomy {
 namespace {
 
-constexpr double kDriveEnable_s = 1.0;   // drives must answer within this time after the rest
-constexpr double kArrivedHold_s = 0.5;   // standing at the goal before the mission counts as done
+constexpr double kDriveEnable_s = 1.0;  // drives must answer within this time after the rest
+constexpr double kArrivedHold_s = 0.5;  // standing at the goal before the mission counts as done
 
 }  // namespace
 
@@ -62,8 +62,7 @@ void Mission::update(const estimation::RobotState& state, const MissionFacts& fa
       }
       break;
     case MissionPhase::kArrived:
-    case MissionPhase::kStopped:
-      break;
+    case MissionPhase::kStopped: break;
   }
 }
 

@@ -11,7 +11,7 @@ namespace surefoot::autonomy {
 
 // What the mission needs to know beside the state.
 struct MissionFacts {
-  bool drives_ready = false;    // every drive answers
+  bool drives_ready = false;  // every drive answers
   bool stand_up_done = false;
   bool all_in_stance = false;
   StopReason fault = StopReason::kNone;

@@ -7,6 +7,7 @@
 #include "core/base/fields.h"
 #include "core/base/fixed_vector.h"
 #include "core/base/time.h"
+#include "core/control/foothold_reason.h"
 #include "core/robot/robot_model.h"
 #include "hal/api/can_port.h"
 #include "hal/api/depth_camera_port.h"
@@ -56,7 +57,7 @@ struct TickInputs {
 enum class MissionPhase : std::uint8_t {
   kEnableDrives = 0,
   kStandUp,
-  kSettle,   // stand still: gyro bias, first map
+  kSettle,  // stand still: gyro bias, first map
   kWalk,
   kArrived,  // standing at the goal
   kStopped,  // ended short of the goal; `stop_reason` says why
@@ -64,20 +65,13 @@ enum class MissionPhase : std::uint8_t {
 
 enum class StopReason : std::uint8_t {
   kNone = 0,
-  kNoFoothold,       // no cell within reach can bear a foot, for longer than the patience
-  kDriveSilent,      // a joint's replies stopped
-  kTilt,             // attitude beyond recovery
+  kNoFoothold,   // no cell within reach can bear a foot, for longer than the patience
+  kDriveSilent,  // a joint's replies stopped
+  kTilt,         // attitude beyond recovery
   kImuSilent,
-  kOperator,         // emergency stop
+  kOperator,  // emergency stop
   kMissionTimeout,
-  kDriveFault,       // a drive reported an error code
-};
-
-enum class FootholdReason : std::uint8_t {
-  kNominal = 0,   // the Raibert point can bear a foot
-  kMoved,         // moved to the nearest cell that can
-  kNone,          // none within reach: the leg holds its nominal point, the body slows down
-  kMapOff,        // mapping disabled
+  kDriveFault,  // a drive reported an error code
 };
 
 // One leg, in the odometry frame O (docs/frames_and_units.md).
@@ -88,7 +82,7 @@ struct LegTelemetry {
   std::array<double, 3> force_O_N{};  // commanded ground force on the robot
   std::array<double, 3> foothold_nominal_O_m{};
   std::array<double, 3> foothold_O_m{};
-  FootholdReason foothold_reason = FootholdReason::kNominal;
+  control::FootholdReason foothold_reason = control::FootholdReason::kNominal;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -105,9 +99,9 @@ struct LegTelemetry {
 struct JointTelemetry {
   double position_rad = 0;
   double velocity_rad_s = 0;
-  double torque_Nm = 0;                  // measured by the drive
+  double torque_Nm = 0;  // measured by the drive
   double position_command_rad = 0;
-  double torque_command_Nm = 0;          // feed-forward
+  double torque_command_Nm = 0;  // feed-forward
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -64,10 +64,10 @@ void BodyReferenceTracker::follow_ground(const estimation::RobotState& state, do
   const double pitch = -math::atan(plane.slope_x * config_.slope_share);
   const double roll = math::atan(plane.slope_y * config_.slope_share);
   reference_.ground_z_m = approach(reference_.ground_z_m, plane.height_m, step_s, tau);
-  reference_.pitch_rad = approach(reference_.pitch_rad,
-                                  math::clamp(pitch, -kMaxTilt_rad, kMaxTilt_rad), step_s, tau);
-  reference_.roll_rad = approach(reference_.roll_rad,
-                                 math::clamp(roll, -kMaxTilt_rad, kMaxTilt_rad), step_s, tau);
+  reference_.pitch_rad =
+      approach(reference_.pitch_rad, math::clamp(pitch, -kMaxTilt_rad, kMaxTilt_rad), step_s, tau);
+  reference_.roll_rad =
+      approach(reference_.roll_rad, math::clamp(roll, -kMaxTilt_rad, kMaxTilt_rad), step_s, tau);
 }
 
 void BodyReferenceTracker::update(const estimation::RobotState& state,
@@ -76,8 +76,7 @@ void BodyReferenceTracker::update(const estimation::RobotState& state,
   reference_.yaw_rate_rad_s = command.yaw_rate_rad_s;
   const double yaw_error =
       math::wrap_angle(reference_.yaw_rad + command.yaw_rate_rad_s * step_s - state.yaw_rad);
-  reference_.yaw_rad =
-      state.yaw_rad + math::clamp(yaw_error, -kMaxYawError_rad, kMaxYawError_rad);
+  reference_.yaw_rad = state.yaw_rad + math::clamp(yaw_error, -kMaxYawError_rad, kMaxYawError_rad);
 
   const math::SinCos yaw = math::sin_cos(state.yaw_rad);
   reference_.v_OB_m_s = Vector3(yaw.cos * command.forward_m_s - yaw.sin * command.left_m_s,
@@ -93,11 +92,10 @@ void BodyReferenceTracker::update(const estimation::RobotState& state,
 }
 
 Vector6 BodyReferenceTracker::wrench_O(const estimation::RobotState& state) const {
-  const Matrix3 wanted = geometry::from_roll_pitch_yaw(reference_.roll_rad, reference_.pitch_rad,
-                                                       reference_.yaw_rad);
+  const Matrix3 wanted =
+      geometry::from_roll_pitch_yaw(reference_.roll_rad, reference_.pitch_rad, reference_.yaw_rad);
   // Rotation still to be made and rates, in B axes: the gains are roll, pitch, yaw.
-  const Vector3 turn_B =
-      geometry::to_rotation_vector(state.R_OB.transpose() * wanted);
+  const Vector3 turn_B = geometry::to_rotation_vector(state.R_OB.transpose() * wanted);
   const Vector3 rate_error_B =
       state.R_OB.transpose() * Vector3(0.0, 0.0, reference_.yaw_rate_rad_s) -
       state.angular_velocity_B_rad_s;

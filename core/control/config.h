@@ -10,7 +10,7 @@ namespace surefoot::control {
 
 struct GaitConfig {
   double period_s = 0;
-  double stance_share = 0;                              // of the period, per leg
+  double stance_share = 0;                    // of the period, per leg
   std::array<double, robot::kLegs> offset{};  // share of the period, FR FL HR HL
 
   double stance_s() const { return period_s * stance_share; }
@@ -25,18 +25,19 @@ struct GaitConfig {
 };
 
 struct FootholdConfig {
-  double velocity_feedback_s = 0;     // k of the Raibert rule
-  double max_offset_m = 0;            // from the hip's point, each axis
-  double lateral_offset_m = 0;        // outwards of the hip's point
-  double search_radius_m = 0;         // how far a foothold may be moved
-  double margin_weight_m = 0;         // detour that one more cell of distance from an edge is worth
-  double lock_progress = 0;           // no change of target after this share of a swing
+  double velocity_feedback_s = 0;  // k of the Raibert rule
+  double max_offset_m = 0;         // from the hip's point, each axis
+  double lateral_offset_m = 0;     // outwards of the hip's point
+  double search_radius_m = 0;      // how far a foothold may be moved
+  double margin_weight_m = 0;      // detour that one more cell of distance from an edge is worth
+  double lock_progress = 0;        // no change of target after this share of a swing
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.real("velocity_feedback_s", self.velocity_feedback_s, {0.0, 1.0}, "Raibert gain k");
     visit.real("max_offset_m", self.max_offset_m, {0.0, 0.6}, "from the hip's point, each axis");
-    visit.real("lateral_offset_m", self.lateral_offset_m, {-0.2, 0.2}, "outwards of the hip's point");
+    visit.real("lateral_offset_m", self.lateral_offset_m, {-0.2, 0.2},
+               "outwards of the hip's point");
     visit.real("search_radius_m", self.search_radius_m, {0.0, 0.4}, "how far a foothold may move");
     visit.real("margin_weight_m", self.margin_weight_m, {0.0, 0.1},
                "detour that one more cell of distance from an edge is worth");
@@ -67,11 +68,11 @@ struct BodyConfig {
   std::array<double, 3> velocity_gain_1_s{};
   std::array<double, 3> attitude_gain_1_s2{};  // roll, pitch, yaw
   std::array<double, 3> rate_gain_1_s{};
-  std::array<double, 3> inertia_kg_m2{};       // whole robot about B, B axes
-  double ground_filter_s = 0;                  // time constant of ground height and slope
-  double slope_share = 0;                      // of the ground's slope that the trunk follows
-  double max_acceleration_m_s2 = 0;            // of the commanded velocity
-  double max_reference_error_m = 0;            // the position reference waits for the body
+  std::array<double, 3> inertia_kg_m2{};  // whole robot about B, B axes
+  double ground_filter_s = 0;             // time constant of ground height and slope
+  double slope_share = 0;                 // of the ground's slope that the trunk follows
+  double max_acceleration_m_s2 = 0;       // of the commanded velocity
+  double max_reference_error_m = 0;       // the position reference waits for the body
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -90,14 +91,14 @@ struct BodyConfig {
 };
 
 struct ForceConfig {
-  double friction = 0;                        // the pyramid the controller stays inside
-  double min_normal_N = 0;                    // of a foot in contact
+  double friction = 0;      // the pyramid the controller stays inside
+  double min_normal_N = 0;  // of a foot in contact
   double max_normal_N = 0;
-  std::array<double, 3> force_weight{};       // x, y, z of the wrench's error
+  std::array<double, 3> force_weight{};  // x, y, z of the wrench's error
   std::array<double, 3> moment_weight{};
-  double effort_weight = 0;                   // on the forces themselves
-  double change_weight = 0;                   // on their change from the last tick
-  double stance_kd_Nm_s_rad = 0;              // joint damping under load
+  double effort_weight = 0;       // on the forces themselves
+  double change_weight = 0;       // on their change from the last tick
+  double stance_kd_Nm_s_rad = 0;  // joint damping under load
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -113,9 +114,9 @@ struct ForceConfig {
 };
 
 struct StandUpConfig {
-  double fold_s = 0;                          // to the folded pose
-  double rise_s = 0;                          // to standing
-  std::array<double, 3> folded_rad{};         // abad, hip, knee
+  double fold_s = 0;                   // to the folded pose
+  double rise_s = 0;                   // to standing
+  std::array<double, 3> folded_rad{};  // abad, hip, knee
   double kp_Nm_rad = 0;
   double kd_Nm_s_rad = 0;
 

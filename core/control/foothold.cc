@@ -29,8 +29,7 @@ Vector3 FootholdPlanner::nominal_O_m(std::size_t leg, const estimation::RobotSta
   hip_B[1] += robot::left_sign(leg) * config_.lateral_offset_m;
   const Vector2 shoulder(yaw.cos * hip_B[0] - yaw.sin * hip_B[1],
                          yaw.sin * hip_B[0] + yaw.cos * hip_B[1]);
-  const Vector2 point =
-      state.p_OB_m.head<2>() + velocity * until_touchdown_s + shoulder + symmetry;
+  const Vector2 point = state.p_OB_m.head<2>() + velocity * until_touchdown_s + shoulder + symmetry;
   return {point[0], point[1], ground_z_m + model_.foot_radius_m};
 }
 
@@ -40,7 +39,7 @@ Foothold FootholdPlanner::choose(const Vector3& nominal_O_m,
   foothold.nominal_O_m = nominal_O_m;
   foothold.position_O_m = nominal_O_m;
   if (window == nullptr) {
-    foothold.reason = autonomy::FootholdReason::kMapOff;
+    foothold.reason = FootholdReason::kMapOff;
     return foothold;
   }
   mapping::FootholdQuery query;
@@ -50,13 +49,12 @@ Foothold FootholdPlanner::choose(const Vector3& nominal_O_m,
   query.margin_weight_m = config_.margin_weight_m;
   const Result<mapping::Foothold> found = mapping::find_foothold(*window, query);
   if (!found.ok()) {
-    foothold.reason = autonomy::FootholdReason::kNone;
+    foothold.reason = FootholdReason::kNone;
     return foothold;
   }
   const mapping::Foothold& place = found.value();
   foothold.position_O_m = {place.x_O_m, place.y_O_m, place.z_O_m + model_.foot_radius_m};
-  foothold.reason = place.moved ? autonomy::FootholdReason::kMoved
-                                : autonomy::FootholdReason::kNominal;
+  foothold.reason = place.moved ? FootholdReason::kMoved : FootholdReason::kNominal;
   return foothold;
 }
 

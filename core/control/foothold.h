@@ -5,8 +5,8 @@
 // with the body carried forward at its present velocity. The map then decides (mapping/foothold.h).
 #pragma once
 
-#include "core/autonomy/tick.h"
 #include "core/control/config.h"
+#include "core/control/foothold_reason.h"
 #include "core/estimation/estimator.h"
 #include "core/mapping/map_window.h"
 #include "core/robot/robot_model.h"
@@ -21,9 +21,9 @@ struct VelocityCommand {
 };
 
 struct Foothold {
-  Vector3 nominal_O_m = Vector3::Zero();   // centre of the foot sphere
+  Vector3 nominal_O_m = Vector3::Zero();  // centre of the foot sphere
   Vector3 position_O_m = Vector3::Zero();
-  autonomy::FootholdReason reason = autonomy::FootholdReason::kNominal;
+  FootholdReason reason = FootholdReason::kNominal;
 };
 
 class FootholdPlanner {

@@ -41,8 +41,8 @@ Vector3 project_onto_pyramid(const Vector3& f, double mu, double low, double hig
   const double ay = magnitude(f[1]);
   const double larger = ax > ay ? ax : ay;
   const double smaller = ax > ay ? ay : ax;
-  double z = f[2];                                              // no side active
-  if (larger > mu * z) z = (f[2] + mu * larger) / (1.0 + mu * mu);  // one side
+  double z = f[2];                                                            // no side active
+  if (larger > mu * z) z = (f[2] + mu * larger) / (1.0 + mu * mu);            // one side
   if (smaller > mu * z) z = (f[2] + mu * (ax + ay)) / (1.0 + 2.0 * mu * mu);  // both
   z = math::clamp(z, low, high);
   const double side = mu * (z > 0.0 ? z : 0.0);
@@ -84,8 +84,8 @@ const ForceSolution& ForceDistribution::solve(const ForceProblem& problem) {
         continue;
       }
       const Vector3 point = relaxed.segment<3>(row) + dual_.segment<3>(row);
-      split_.segment<3>(row) = project_onto_pyramid(point, config_.friction, config_.min_normal_N,
-                                                    config_.max_normal_N);
+      split_.segment<3>(row) =
+          project_onto_pyramid(point, config_.friction, config_.min_normal_N, config_.max_normal_N);
       dual_.segment<3>(row) = point - split_.segment<3>(row);
     }
   }

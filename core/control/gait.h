@@ -10,8 +10,8 @@ namespace surefoot::control {
 
 struct LegPhase {
   bool stance = true;
-  double progress = 0;      // 0..1 within the current stance or swing
-  double remaining_s = 0;   // of the current stance or swing
+  double progress = 0;     // 0..1 within the current stance or swing
+  double remaining_s = 0;  // of the current stance or swing
 };
 
 class Gait {

@@ -45,6 +45,7 @@ std::array<estimation::GaitPhase, robot::kLegs> Locomotion::gait_phases() const 
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     phases[leg].stance_planned = legs_[leg].mode != LegMode::kSwing;
     phases[leg].swing_progress = legs_[leg].swing_progress;
+    phases[leg].height_above_landing_m = legs_[leg].height_above_landing_m;
   }
   return phases;
 }
@@ -62,7 +63,8 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
                                                    double step_s) {
   // Without footholds the body must not run ahead of its feet.
   constexpr double kBlockedSlowdown_s = 0.5;
-  const double share = stepping ? math::clamp(1.0 - blocked_s_ / kBlockedSlowdown_s, 0.0, 1.0) : 0.0;
+  const double share =
+      stepping ? math::clamp(1.0 - blocked_s_ / kBlockedSlowdown_s, 0.0, 1.0) : 0.0;
   const double change = config_.body.max_acceleration_m_s2 * step_s;
   command_.forward_m_s = ramp(command_.forward_m_s, command.forward_m_s * share, change);
   command_.left_m_s = ramp(command_.left_m_s, command.left_m_s * share, change);
@@ -150,6 +152,8 @@ void Locomotion::advance_leg(std::size_t leg, const estimation::RobotState& stat
       break;
   }
   if (should_stand) status.landed_early = false;
+  status.height_above_landing_m =
+      status.mode == LegMode::kSwing ? foot.p_O_m[2] - status.path.landing_O_m[2] : 0.0;
 }
 
 void Locomotion::try_swing(std::size_t leg, const estimation::RobotState& state,
@@ -160,7 +164,7 @@ void Locomotion::try_swing(std::size_t leg, const estimation::RobotState& state,
       footholds_.nominal_O_m(leg, state, command_, gait_.legs()[leg].remaining_s,
                              config_.gait.stance_s(), reference_.ground_z_m);
   status.foothold = footholds_.choose(nominal, window);
-  if (status.foothold.reason == autonomy::FootholdReason::kNone) {
+  if (status.foothold.reason == FootholdReason::kNone) {
     status.skipped_swing = true;
     return;
   }
@@ -180,7 +184,7 @@ void Locomotion::follow_foothold(std::size_t leg, const estimation::RobotState& 
       footholds_.nominal_O_m(leg, state, command_, gait_.legs()[leg].remaining_s,
                              config_.gait.stance_s(), reference_.ground_z_m);
   const Foothold next = footholds_.choose(nominal, window);
-  if (next.reason == autonomy::FootholdReason::kNone) return;
+  if (next.reason == FootholdReason::kNone) return;
   status.foothold = next;
   set_path(leg, window);
 }
@@ -191,9 +195,9 @@ void Locomotion::set_path(std::size_t leg, const mapping::MapWindow* window) {
   path.landing_O_m = status.foothold.position_O_m;
   double highest = larger(path.lift_off_O_m[2], path.landing_O_m[2]);
   if (window != nullptr) {
-    const Result<double> obstacle = window->max_height_along(
-        path.lift_off_O_m[0], path.lift_off_O_m[1], path.landing_O_m[0], path.landing_O_m[1],
-        2.0 * model_.foot_radius_m);
+    const Result<double> obstacle =
+        window->max_height_along(path.lift_off_O_m[0], path.lift_off_O_m[1], path.landing_O_m[0],
+                                 path.landing_O_m[1], 2.0 * model_.foot_radius_m);
     if (obstacle.ok()) highest = larger(highest, obstacle.value() + model_.foot_radius_m);
   }
   path.apex_O_m = highest + config_.swing.clearance_m;

@@ -35,11 +35,12 @@ struct LegStatus {
   double swing_progress = 0;
   SwingPath path;
   Foothold foothold;
-  double searched_m = 0;                   // depth below the expected landing
-  Vector3 anchor_O_m = Vector3::Zero();    // where a search began
-  Vector3 force_O_N = Vector3::Zero();     // commanded, ground on foot
-  bool skipped_swing = false;              // no foothold: stays in stance during this planned swing
-  bool landed_early = false;               // touched down before the planned end of this swing
+  double height_above_landing_m = 0;     // of the foot, while it swings
+  double searched_m = 0;                 // depth below the expected landing
+  Vector3 anchor_O_m = Vector3::Zero();  // where a search began
+  Vector3 force_O_N = Vector3::Zero();   // commanded, ground on foot
+  bool skipped_swing = false;            // no foothold: stays in stance during this planned swing
+  bool landed_early = false;             // touched down before the planned end of this swing
 };
 
 class Locomotion {
@@ -74,8 +75,7 @@ class Locomotion {
   void set_path(std::size_t leg, const mapping::MapWindow* window);
   void distribute_forces(const estimation::RobotState& state);
   void command_stance(std::size_t leg, const estimation::RobotState& state);
-  void command_foot(std::size_t leg, const estimation::RobotState& state,
-                    const SwingPoint& target);
+  void command_foot(std::size_t leg, const estimation::RobotState& state, const SwingPoint& target);
 
   ControlConfig config_;
   robot::RobotModel model_;

@@ -10,8 +10,7 @@ double smooth(double s) { return s * s * (3.0 - 2.0 * s); }
 
 }  // namespace
 
-void StandUp::reset(const StandUpConfig& config, const robot::RobotModel& model,
-                    double height_m) {
+void StandUp::reset(const StandUpConfig& config, const robot::RobotModel& model, double height_m) {
   config_ = config;
   model_ = model;
   height_m_ = height_m;
@@ -30,15 +29,13 @@ void StandUp::start(const actuation::JointStates& joints) {
 }
 
 Vector3 StandUp::standing_foot_B_m(std::size_t leg, double height_m) const {
-  return robot::hip_joint_B_m(model_, leg) +
-         Vector3(0.0, 0.0, model_.foot_radius_m - height_m);
+  return robot::hip_joint_B_m(model_, leg) + Vector3(0.0, 0.0, model_.foot_radius_m - height_m);
 }
 
 actuation::JointCommands StandUp::update(double step_s) {
   elapsed_s_ += step_s;
   const double fold = smooth(math::clamp(elapsed_s_ / config_.fold_s, 0.0, 1.0));
-  const double rise =
-      smooth(math::clamp((elapsed_s_ - config_.fold_s) / config_.rise_s, 0.0, 1.0));
+  const double rise = smooth(math::clamp((elapsed_s_ - config_.fold_s) / config_.rise_s, 0.0, 1.0));
   const Vector3 folded(config_.folded_rad[0], config_.folded_rad[1], config_.folded_rad[2]);
   actuation::JointCommands commands;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {

@@ -67,14 +67,13 @@ Status AttitudeEstimator::update(const hal::ImuSample& sample, bool lying_still)
   stamp_ = sample.stamp;
 
   if (lying_still) {
-    gyro_bias_B_rad_s_ += (gyro_B - gyro_bias_B_rad_s_) *
-                          math::clamp(config_.still_bias_gain_1_s * step_s, 0.0, 1.0);
+    gyro_bias_B_rad_s_ +=
+        (gyro_B - gyro_bias_B_rad_s_) * math::clamp(config_.still_bias_gain_1_s * step_s, 0.0, 1.0);
   }
   const Vector3 error = gravity_correction(force_B);
   gyro_bias_B_rad_s_ -= error * (config_.bias_gain_1_s2 * step_s);
   angular_velocity_B_rad_s_ = gyro_B - gyro_bias_B_rad_s_;
-  const double gain =
-      lying_still ? config_.still_correction_gain_1_s : config_.correction_gain_1_s;
+  const double gain = lying_still ? config_.still_correction_gain_1_s : config_.correction_gain_1_s;
   const Vector3 rate = angular_velocity_B_rad_s_ + error * gain;
   q_OB_ = geometry::normalised(q_OB_ * geometry::from_rotation_vector(rate * step_s));
   R_OB_ = geometry::to_matrix(q_OB_);

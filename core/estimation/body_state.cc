@@ -47,8 +47,7 @@ void BodyStateEstimator::update(const Vector3& acceleration_O_m_s2,
 void BodyStateEstimator::correct_with_foot(std::size_t leg, const FootObservation& foot) {
   const double position_variance = math::square(config_.foot_position_noise_m);
   const double velocity_variance = math::square(config_.foot_velocity_noise_m_s);
-  const Vector3 innovation =
-      foot.rolling_velocity_O_m_s - foot.velocity_from_body_O_m_s - v_O_m_s_;
+  const Vector3 innovation = foot.rolling_velocity_O_m_s - foot.velocity_from_body_O_m_s - v_O_m_s_;
   const double gate = math::square(config_.slip_gate_sigma);
   if (innovation.squaredNorm() > gate * (covariance_(1, 1) + velocity_variance)) {
     landmark_[leg] = false;

@@ -28,7 +28,7 @@ namespace surefoot::estimation {
 // One foot as the joints and the attitude show it, rotated into O.
 struct FootObservation {
   bool in_contact = false;
-  Vector3 from_body_O_m = Vector3::Zero();       // trunk origin to foot centre
+  Vector3 from_body_O_m = Vector3::Zero();             // trunk origin to foot centre
   Vector3 velocity_from_body_O_m_s = Vector3::Zero();  // its rate of change as seen from O's axes
   Vector3 rolling_velocity_O_m_s = Vector3::Zero();    // of the foot's centre over its contact
 };

@@ -16,7 +16,8 @@ struct AttitudeConfig {
   static void describe(Self& self, Visitor& visit) {
     visit.real("correction_gain_1_s", self.correction_gain_1_s, {0.0, 10.0},
                "pull of the accelerometer on roll and pitch");
-    visit.real("bias_gain_1_s2", self.bias_gain_1_s2, {0.0, 10.0}, "the same error on the gyro bias");
+    visit.real("bias_gain_1_s2", self.bias_gain_1_s2, {0.0, 10.0},
+               "the same error on the gyro bias");
     visit.real("max_gravity_error_m_s2", self.max_gravity_error_m_s2, {0.1, 20.0},
                "no correction when | |f| - g | exceeds this");
     visit.real("still_correction_gain_1_s", self.still_correction_gain_1_s, {0.0, 50.0},
@@ -27,17 +28,23 @@ struct AttitudeConfig {
 };
 
 struct ContactConfig {
-  double observer_gain_1_s = 0;          // bandwidth of the momentum observer
-  double touchdown_force_N = 0;          // above: contact begins
-  double lift_off_force_N = 0;           // below: contact ends
-  double max_touchdown_speed_m_s = 0;    // a foot that sinks faster is still in the air
-  double earliest_swing_phase = 0;       // no touchdown before this share of a swing
-  int confirm_ticks = 0;                 // consecutive ticks above the threshold
+  double observer_gain_1_s = 0;        // bandwidth of the momentum observer
+  double touchdown_force_N = 0;        // above: contact begins
+  double surprise_force_N = 0;         // the same, farther above the expected ground than
+  double expected_height_m = 0;        // this
+  double lift_off_force_N = 0;         // below: contact ends
+  double max_touchdown_speed_m_s = 0;  // a foot that sinks faster is still in the air
+  double earliest_swing_phase = 0;     // no touchdown before this share of a swing
+  int confirm_ticks = 0;               // consecutive ticks above the threshold
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.real("observer_gain_1_s", self.observer_gain_1_s, {1.0, 1000.0}, "momentum observer");
     visit.real("touchdown_force_N", self.touchdown_force_N, {0.1, 500.0}, "above: contact begins");
+    visit.real("surprise_force_N", self.surprise_force_N, {0.1, 500.0},
+               "the same far above the expected ground");
+    visit.real("expected_height_m", self.expected_height_m, {0.0, 0.5},
+               "a foot lower than this above its landing is where ground is expected");
     visit.real("lift_off_force_N", self.lift_off_force_N, {0.0, 500.0}, "below: contact ends");
     visit.real("max_touchdown_speed_m_s", self.max_touchdown_speed_m_s, {0.01, 5.0},
                "a foot that sinks faster is still in the air");
@@ -49,15 +56,15 @@ struct ContactConfig {
 
 struct BodyStateConfig {
   double accelerometer_noise_m_s2_sqrtHz = 0;
-  double foot_position_noise_m = 0;      // forward kinematics, per measurement
-  double foot_velocity_noise_m_s = 0;    // encoder velocities, foot deformation
-  double foot_slip_noise_m_sqrt_s = 0;   // random walk of a foot in contact
-  double slip_gate_sigma = 0;            // a foot whose velocity is farther off is not used
+  double foot_position_noise_m = 0;     // forward kinematics, per measurement
+  double foot_velocity_noise_m_s = 0;   // encoder velocities, foot deformation
+  double foot_slip_noise_m_sqrt_s = 0;  // random walk of a foot in contact
+  double slip_gate_sigma = 0;           // a foot whose velocity is farther off is not used
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.real("accelerometer_noise_m_s2_sqrtHz", self.accelerometer_noise_m_s2_sqrtHz, {1e-5, 10.0},
-               "noise density, vibration included");
+    visit.real("accelerometer_noise_m_s2_sqrtHz", self.accelerometer_noise_m_s2_sqrtHz,
+               {1e-5, 10.0}, "noise density, vibration included");
     visit.real("foot_position_noise_m", self.foot_position_noise_m, {1e-5, 0.1},
                "of forward kinematics");
     visit.real("foot_velocity_noise_m_s", self.foot_velocity_noise_m_s, {1e-4, 5.0},

@@ -80,16 +80,17 @@ void ContactEstimator::update(const std::array<actuation::JointState, robot::kJo
 void ContactEstimator::decide(std::size_t leg, const GaitPhase& gait, const FootMotion& motion) {
   FootContact& foot = feet_[leg];
   const double force_N = foot.force_O_N[2];
-  const bool may_touch =
-      gait.stance_planned || gait.swing_progress >= config_.earliest_swing_phase;
+  const bool may_touch = gait.stance_planned || gait.swing_progress >= config_.earliest_swing_phase;
   bool next = foot.in_contact;
   if (!may_touch) {
     next = false;
     confirmations_[leg] = 0;
   } else {
     const bool stopped = motion.vertical_velocity_O_m_s > -config_.max_touchdown_speed_m_s;
-    const bool disagrees = foot.in_contact ? force_N < config_.lift_off_force_N
-                                           : stopped && force_N > config_.touchdown_force_N;
+    const bool expected = gait.height_above_landing_m < config_.expected_height_m;
+    const double needed_N = expected ? config_.touchdown_force_N : config_.surprise_force_N;
+    const bool disagrees =
+        foot.in_contact ? force_N < config_.lift_off_force_N : stopped && force_N > needed_N;
     confirmations_[leg] = disagrees ? confirmations_[leg] + 1 : 0;
     if (confirmations_[leg] >= config_.confirm_ticks) {
       next = !foot.in_contact;

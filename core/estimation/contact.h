@@ -5,7 +5,8 @@
 // observer compares the torque with the momentum the leg gains; what is missing went into the ground
 // (generalised-momentum residual, De Luca and Mattone, ICRA 2003), with a constant diagonal inertia per
 // joint, which the reflected rotors dominate. A swinging leg that brakes leaves a residual too, so a
-// touchdown also needs the foot to have stopped sinking.
+// touchdown also needs the foot to have stopped sinking, and far above the expected ground it takes a
+// larger force (surprise_force_N): something unmapped was hit.
 #pragma once
 
 #include <array>
@@ -21,7 +22,8 @@ namespace surefoot::estimation {
 // What the gait says about one leg at this tick.
 struct GaitPhase {
   bool stance_planned = true;
-  double swing_progress = 0;  // 0..1 within a planned swing
+  double swing_progress = 0;          // 0..1 within a planned swing
+  double height_above_landing_m = 0;  // of a swinging foot over the place it is meant to reach
 };
 
 // A foot's motion as the joints and the body's velocity show it.

@@ -23,8 +23,7 @@ void Estimator::place(const Vector3& p_OB_m) {
 
 std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
                               const std::array<actuation::JointState, robot::kJoints>& joints,
-                              const std::array<GaitPhase, robot::kLegs>& gait,
-                              bool lying_still) {
+                              const std::array<GaitPhase, robot::kLegs>& gait, bool lying_still) {
   std::size_t refused = 0;
   for (const hal::ImuSample& sample : imu) {
     if (!ok(attitude_.update(sample, lying_still))) ++refused;
@@ -86,10 +85,8 @@ void Estimator::observe_feet() {
 
     FootObservation& observation = observations_[leg];
     observation.from_body_O_m = state_.R_OB * foot.p_B_m;
-    observation.velocity_from_body_O_m_s =
-        state_.R_OB * (foot.v_B_m_s + omega_B.cross(foot.p_B_m));
-    const Vector3 shank_omega_O =
-        state_.R_OB * (omega_B + robot::shank_angular_velocity_B(q, qd));
+    observation.velocity_from_body_O_m_s = state_.R_OB * (foot.v_B_m_s + omega_B.cross(foot.p_B_m));
+    const Vector3 shank_omega_O = state_.R_OB * (omega_B + robot::shank_angular_velocity_B(q, qd));
     observation.rolling_velocity_O_m_s = shank_omega_O.cross(contact_to_centre_O);
   }
 }

@@ -93,12 +93,11 @@ LegSolution solve_leg(const RobotModel& model, std::size_t leg, const Vector3& p
   const double reach = math::clamp(distance, min_reach, max_reach);
   if (reach != distance) status = Status::kOutOfRange;
 
-  const double cos_knee =
-      (reach * reach - thigh * thigh - shank * shank) / (2.0 * thigh * shank);
+  const double cos_knee = (reach * reach - thigh * thigh - shank * shank) / (2.0 * thigh * shank);
   const double knee = math::acos(cos_knee);
   const math::SinCos bend = math::sin_cos(knee);
-  const double hip = math::atan2(p[0], depth) -
-                     math::atan2(shank * bend.sin, thigh + shank * bend.cos);
+  const double hip =
+      math::atan2(p[0], depth) - math::atan2(shank * bend.sin, thigh + shank * bend.cos);
   return {{math::wrap_angle(abad), hip, knee}, status};
 }
 

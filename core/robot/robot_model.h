@@ -47,8 +47,8 @@ struct Link {
 
 // A motor with its gear, seen at the joint.
 struct Actuator {
-  double gear_ratio = 1;             // rotor turns per joint turn
-  double rotor_inertia_kg_m2 = 0;    // about the spin axis, before the gear
+  double gear_ratio = 1;           // rotor turns per joint turn
+  double rotor_inertia_kg_m2 = 0;  // about the spin axis, before the gear
   double rotor_mass_kg = 0;
   double torque_limit_Nm = 0;        // at the joint
   double no_load_speed_rad_s = 0;    // at the joint, full bus voltage
@@ -139,7 +139,7 @@ struct DepthCameraSpecification {
   double max_range_m = 0;
   double disparity_noise_px = 0;  // one sigma; depth noise = z^2 * this / (focal_px * baseline)
   double baseline_m = 0;
-  double native_width_px = 0;     // image width at which the disparity noise is stated
+  double native_width_px = 0;  // image width at which the disparity noise is stated
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -162,19 +162,19 @@ struct RobotModel {
   std::array<double, 3> trunk_size_m{};  // box around the trunk, for contact and self filtering
   double abad_x_m = 0;                   // abduction joint from B, per side: (+-x, +-y, 0)
   double abad_y_m = 0;
-  double hip_offset_m = 0;               // abduction joint to hip joint, outwards (y)
-  double thigh_length_m = 0;             // hip to knee
-  double knee_offset_m = 0;              // hip to knee, outwards (y)
-  double shank_length_m = 0;             // knee to centre of the foot sphere
+  double hip_offset_m = 0;    // abduction joint to hip joint, outwards (y)
+  double thigh_length_m = 0;  // hip to knee
+  double knee_offset_m = 0;   // hip to knee, outwards (y)
+  double shank_length_m = 0;  // knee to centre of the foot sphere
   double foot_radius_m = 0;
-  double thigh_radius_m = 0;             // capsules around the links, for contact and self filtering
+  double thigh_radius_m = 0;  // capsules around the links, for contact and self filtering
   double shank_radius_m = 0;
-  Link abad;                             // joint frames: abduction, hip, knee
+  Link abad;  // joint frames: abduction, hip, knee
   Link thigh;
   Link shank;
   std::array<Actuator, kJointsPerLeg> actuators;
   std::array<JointWiring, kJoints> wiring;
-  double drive_timeout_s = 0;            // drives go limp after this long without a command
+  double drive_timeout_s = 0;  // drives go limp after this long without a command
   ImuSpecification imu;
   DepthCameraSpecification depth_camera;
 

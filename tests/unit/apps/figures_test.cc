@@ -11,7 +11,7 @@
 namespace surefoot::apps {
 namespace {
 
-using autonomy::FootholdReason;
+using control::FootholdReason;
 using autonomy::MissionPhase;
 
 // Three metres of trot over a field of bumps, with a little drift.

@@ -41,7 +41,8 @@ double cost(const ForceProblem& problem, const ForceConfig& c,
   }
   double sum = (c.effort_weight + c.change_weight) * effort;
   for (std::size_t i = 0; i < 3; ++i) {
-    sum += c.force_weight[i] * error[static_cast<Eigen::Index>(i)] * error[static_cast<Eigen::Index>(i)];
+    sum += c.force_weight[i] * error[static_cast<Eigen::Index>(i)] *
+           error[static_cast<Eigen::Index>(i)];
     sum += c.moment_weight[i] * error[static_cast<Eigen::Index>(i + 3)] *
            error[static_cast<Eigen::Index>(i + 3)];
   }
@@ -50,7 +51,8 @@ double cost(const ForceProblem& problem, const ForceConfig& c,
 
 ForceProblem random_problem(Random& random) {
   ForceProblem problem;
-  for (int i = 0; i < 6; ++i) problem.wrench_O[i] = random.uniform(-30.0, 30.0) * (i < 3 ? 1.0 : 0.3);
+  for (int i = 0; i < 6; ++i)
+    problem.wrench_O[i] = random.uniform(-30.0, 30.0) * (i < 3 ? 1.0 : 0.3);
   problem.wrench_O[2] += 87.0;
   const int trot = static_cast<int>(random.below(3));
   for (std::size_t leg = 0; leg < 4; ++leg) {
@@ -59,8 +61,8 @@ ForceProblem random_problem(Random& random) {
     const double x = random.uniform(-0.08, 0.08);
     const double y = random.uniform(-0.05, 0.05);
     const double z = random.uniform(-0.34, -0.22);
-    problem.lever_O_m[leg] = Vector3(robot::front_sign(leg) * 0.19 + x,
-                                     robot::left_sign(leg) * 0.115 + y, z);
+    problem.lever_O_m[leg] =
+        Vector3(robot::front_sign(leg) * 0.19 + x, robot::left_sign(leg) * 0.115 + y, z);
   }
   return problem;
 }

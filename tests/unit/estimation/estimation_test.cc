@@ -47,9 +47,9 @@ TEST(Attitude, StartsFromRestAndNotFromABump) {
   ASSERT_EQ(estimator.update(sample_at(1, Vector3::Zero(), Vector3(25, 3, 1)), false), Status::kOk);
   EXPECT_FALSE(estimator.initialised());
   for (int i = 2; i <= 51; ++i) {
-    ASSERT_EQ(estimator.update(
-                  sample_at(i, Vector3::Zero(), R.transpose() * Vector3(0, 0, 9.81)), false),
-              Status::kOk);
+    ASSERT_EQ(
+        estimator.update(sample_at(i, Vector3::Zero(), R.transpose() * Vector3(0, 0, 9.81)), false),
+        Status::kOk);
   }
   EXPECT_TRUE(estimator.initialised());
   EXPECT_LT((estimator.R_OB() - R).norm(), 1e-12);
@@ -64,9 +64,9 @@ TEST(Attitude, IntegratesAConstantTurnAndIgnoresTheMountRotation) {
   const Vector3 omega_B(0.0, 0.0, 0.5);
   const int first = start(estimator, R_BI.transpose() * Vector3(0, 0, 9.81));
   for (int i = first; i < first + 2000; ++i) {
-    ASSERT_EQ(estimator.update(sample_at(i, R_BI.transpose() * omega_B,
-                                         R_BI.transpose() * Vector3(0, 0, 9.81)),
-                               false),
+    ASSERT_EQ(estimator.update(
+                  sample_at(i, R_BI.transpose() * omega_B, R_BI.transpose() * Vector3(0, 0, 9.81)),
+                  false),
               Status::kOk);
   }
   const Vector3 rpy = geometry::to_roll_pitch_yaw(estimator.R_OB());
@@ -155,8 +155,8 @@ TEST(BodyState, FollowsATrotOverUnevenGround) {
       const bool stance = tick < 500 || phase < 120;
       if (phase == 160 && tick >= 500) {
         const double height = random.uniform(-0.05, 0.05);
-        feet[leg] = p + Vector3(robot::front_sign(leg) * 0.19 + 0.06,
-                                robot::left_sign(leg) * 0.115, height - p[2]);
+        feet[leg] = p + Vector3(robot::front_sign(leg) * 0.19 + 0.06, robot::left_sign(leg) * 0.115,
+                                height - p[2]);
       }
       observations[leg].in_contact = stance;
       Vector3 noise;

@@ -56,7 +56,8 @@ TEST(Kinematics, JacobianAgreesWithFiniteDifferences) {
       plus[joint] += kStep;
       minus[joint] -= kStep;
       const Vector3 difference =
-          (foot_position_B_m(model, leg, plus) - foot_position_B_m(model, leg, minus)) / (2 * kStep);
+          (foot_position_B_m(model, leg, plus) - foot_position_B_m(model, leg, minus)) /
+          (2 * kStep);
       EXPECT_LT((difference - jacobian.col(joint)).norm(), 1e-9);
     }
   }
@@ -89,8 +90,7 @@ TEST(Kinematics, TargetsOutOfReachArePulledOntoTheShellAndReported) {
 
 TEST(Kinematics, ATargetOnTheAbductionAxisStillGivesFiniteAngles) {
   const RobotModel model = mini_cheetah();
-  const LegSolution solution =
-      solve_leg(model, kHindRight, abduction_joint_B_m(model, kHindRight));
+  const LegSolution solution = solve_leg(model, kHindRight, abduction_joint_B_m(model, kHindRight));
   EXPECT_EQ(solution.status, Status::kOutOfRange);
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(std::isfinite(solution.q_rad[i]));
 }
@@ -107,8 +107,8 @@ TEST(Kinematics, ShankAngularVelocityAgreesWithTheMovingKneeAndFoot) {
     const LegPoints next = leg_points_B(model, kFrontLeft, q + qd * kStep);
     const LegPoints last = leg_points_B(model, kFrontLeft, q - qd * kStep);
     const Vector3 shank = now.p_B_m[3] - now.p_B_m[2];
-    const Vector3 rate = ((next.p_B_m[3] - next.p_B_m[2]) - (last.p_B_m[3] - last.p_B_m[2])) /
-                         (2 * kStep);
+    const Vector3 rate =
+        ((next.p_B_m[3] - next.p_B_m[2]) - (last.p_B_m[3] - last.p_B_m[2])) / (2 * kStep);
     EXPECT_LT((shank_angular_velocity_B(q, qd).cross(shank) - rate).norm(), 1e-8);
   }
 }

@@ -1,0 +1,15 @@
+// Why a foothold is where it is.
+#pragma once
+
+#include <cstdint>
+
+namespace surefoot::control {
+
+enum class FootholdReason : std::uint8_t {
+  kNominal = 0,  // the Raibert point can bear a foot
+  kMoved,        // moved to the nearest cell that can
+  kNone,         // none within reach: the leg stays in stance, the body slows down
+  kMapOff,       // mapping disabled: the Raibert point, unchecked
+};
+
+}  // namespace surefoot::control
