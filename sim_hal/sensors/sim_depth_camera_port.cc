@@ -223,6 +223,10 @@ void SimDepthCameraPort::expose(TimeNs now, const Vector3& p_WB_m, const Matrix3
     --waiting_;
     ++counters_.dropped;
   }
+  // Gaps are what never came here; what a full queue loses is counted as dropped, once.
+  if (arrived_) counters_.gaps += sequence - expected_;
+  arrived_ = true;
+  expected_ = sequence + 1;
   hal::DepthFrame& frame = (*frames_)[(first_ + waiting_) % kQueue];
   ++waiting_;
   frame.stamp = now;
@@ -246,8 +250,6 @@ Status SimDepthCameraPort::do_receive(hal::DepthFrame& out) {
   out.intrinsics = frame.intrinsics;
   out.depth_unit_m = frame.depth_unit_m;
   std::copy_n(frame.depth.begin(), frame.pixel_count(), out.depth.begin());
-  if (counters_.delivered > 0) counters_.gaps += frame.sequence - expected_;
-  expected_ = frame.sequence + 1;
   first_ = (first_ + 1) % kQueue;
   --waiting_;
   ++counters_.delivered;

@@ -91,7 +91,8 @@ class SimDepthCameraPort final : public hal::DepthCameraPort {
   TimeNs latency_;
   std::uint64_t next_ = 1;  // next exposure at next_ / rate
   std::uint32_t sequence_ = 0;
-  std::uint32_t expected_ = 0;
+  std::uint32_t expected_ = 0;  // sequence number that follows the last arrival
+  bool arrived_ = false;
   std::array<Window, kMaxCapsules> windows_;
   std::size_t window_count_ = 0;
   std::vector<double> exact_;

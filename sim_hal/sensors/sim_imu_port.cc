@@ -63,6 +63,10 @@ void SimImuPort::sample(TimeNs now, const Vector3& angular_velocity_B) {
     ++lost_;
     return;
   }
+  // Gaps are what never came here; what a full queue loses is counted as dropped, once.
+  if (arrived_) counters_.gaps += sample.sequence - expected_;
+  arrived_ = true;
+  expected_ = sample.sequence + 1;
   if (queue_.push_overwrite(sample)) ++counters_.dropped;
 }
 
@@ -70,8 +74,6 @@ std::size_t SimImuPort::do_receive(std::span<hal::ImuSample> out) {
   std::size_t count = 0;
   while (count < out.size() && !queue_.empty()) {
     const hal::ImuSample& sample = queue_.front();
-    if (counters_.delivered > 0) counters_.gaps += sample.sequence - expected_;
-    expected_ = sample.sequence + 1;
     out[count++] = sample;
     queue_.pop_front();
     ++counters_.delivered;

@@ -48,7 +48,8 @@ class SimImuPort final : public hal::ImuPort {
   double span_s_ = 0;
   std::uint64_t next_ = 1;  // index of the next sample: due at next_ / rate
   std::uint32_t sequence_ = 0;
-  std::uint32_t expected_ = 0;  // next sequence number a receiver should see
+  std::uint32_t expected_ = 0;  // sequence number that follows the last arrival
+  bool arrived_ = false;
   RingBuffer<hal::ImuSample, kQueue> queue_;
   hal::SensorCounters counters_;
   std::uint64_t lost_ = 0;
