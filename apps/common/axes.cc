@@ -157,8 +157,7 @@ void Axes::legend(const std::vector<LegendItem>& items) {
   const double y = area_.y - 12;
   for (auto item = items.rbegin(); item != items.rend(); ++item) {
     x -= text_width(item->text, kTickSize);
-    drawing_.text({x, y + 4}, item->text,
-                  {kTickSize, palette::kInk, Anchor::kStart, false, false});
+    drawing_.text({x, y + 4}, item->text, {kTickSize, palette::kInk, Anchor::kStart, false, false});
     x -= 8;
     switch (item->mark) {
       case LegendItem::Mark::kLine: {

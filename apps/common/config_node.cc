@@ -53,8 +53,9 @@ class YamlConverter {
       // A key's line is where a person looks, also when its value begins on the next line.
       child.place.line = item.first.Mark().line + 1;
       if (const ConfigNode* before = node.find(key)) {
-        issues_.push_back({child.place, joined(path, key),
-                           fmt::format("duplicate key, first given in line {}", before->place.line)});
+        issues_.push_back(
+            {child.place, joined(path, key),
+             fmt::format("duplicate key, first given in line {}", before->place.line)});
         continue;
       }
       node.children.emplace_back(key, std::move(child));
@@ -71,8 +72,8 @@ class YamlConverter {
 };
 
 bool is_index(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(),
-                                      [](char c) { return c >= '0' && c <= '9'; });
+  return !text.empty() &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
 std::vector<std::string> split(const std::string& key) {

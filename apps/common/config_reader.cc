@@ -52,8 +52,9 @@ bool ConfigReader::check_list(const ConfigNode& node, const std::string& key, st
     complete = node.find(std::to_string(i)) != nullptr;
   }
   if (!complete) {
-    report(node.place, key, fmt::format("wrong list length: expected {} items, found {}", length,
-                                        node.children.size()));
+    report(node.place, key,
+           fmt::format("wrong list length: expected {} items, found {}", length,
+                       node.children.size()));
   }
   return complete;
 }
@@ -63,11 +64,11 @@ void ConfigReader::read_real(const ConfigNode& node, const std::string& key, Ran
   if (!check_scalar(node, key, "a real number")) return;
   const auto parsed = node.quoted ? std::nullopt : parse_real(node.text);
   if (!parsed) {
-    report(node.place, key, fmt::format("wrong type: '{}' is not a real number, {}", node.text,
-                                        range_text(range)));
+    report(node.place, key,
+           fmt::format("wrong type: '{}' is not a real number, {}", node.text, range_text(range)));
   } else if (!std::isfinite(*parsed)) {
-    report(node.place, key, fmt::format("{} is not a finite number, {}", node.text,
-                                        range_text(range)));
+    report(node.place, key,
+           fmt::format("{} is not a finite number, {}", node.text, range_text(range)));
   } else if (*parsed < range.low || *parsed > range.high) {
     report(node.place, key, fmt::format("{} is out of range, {}", node.text, range_text(range)));
   } else {
@@ -80,8 +81,8 @@ bool ConfigReader::read_integer(const ConfigNode& node, const std::string& key, 
   if (!check_scalar(node, key, "an integer")) return false;
   const auto parsed = node.quoted ? std::nullopt : parse_integer(node.text);
   if (!parsed) {
-    report(node.place, key, fmt::format("wrong type: '{}' is not an integer, {}", node.text,
-                                        range_text(range)));
+    report(node.place, key,
+           fmt::format("wrong type: '{}' is not an integer, {}", node.text, range_text(range)));
     return false;
   }
   const auto real = static_cast<double>(*parsed);

@@ -66,7 +66,8 @@ std::string find_file(const char* option, const std::string& kind, const std::st
                       const fs::path& folder, ConfigIssues& issues) {
   if (is_path(name)) return name;
   if (folder.empty()) {
-    issues.push_back({{option, 0}, "", "no config folder found; set SUREFOOT_CONFIG or give a path"});
+    issues.push_back(
+        {{option, 0}, "", "no config folder found; set SUREFOOT_CONFIG or give a path"});
     return {};
   }
   const fs::path file = folder / kind / (name + ".yaml");
@@ -74,8 +75,10 @@ std::string find_file(const char* option, const std::string& kind, const std::st
   if (!name.empty() && fs::exists(file, error)) return shown(file);
   std::string known;
   for (const std::string& candidate : names_in(folder / kind)) known += " " + candidate;
-  issues.push_back({{option, 0}, "",
-                    fmt::format("'{}' is unknown; {} holds:{}", name, shown(folder / kind), known)});
+  issues.push_back(
+      {{option, 0},
+       "",
+       fmt::format("'{}' is unknown; {} holds:{}", name, shown(folder / kind), known)});
   return {};
 }
 
@@ -134,8 +137,10 @@ void apply_world_item(const std::string& item, const std::vector<std::string>& k
   if (key.empty()) {
     std::string known;
     for (const std::string& candidate : keys) known += " " + candidate;
-    issues.push_back({{"--world", 0}, "world." + name,
-                      "not a parameter of this world; allowed:" + (known.empty() ? " none" : known)});
+    issues.push_back(
+        {{"--world", 0},
+         "world." + name,
+         "not a parameter of this world; allowed:" + (known.empty() ? " none" : known)});
     return;
   }
   const std::string value = equals == std::string::npos ? item : item.substr(equals + 1);
@@ -199,9 +204,8 @@ fs::path config_folder() {
   if (chosen != nullptr && *chosen != '\0') return chosen;
   std::error_code error;
   const fs::path binary = fs::read_symlink("/proc/self/exe", error);
-  for (const fs::path& candidate :
-       {binary.parent_path() / "../../../config", fs::path("config"),
-        fs::path(SUREFOOT_SOURCE_CONFIG)}) {
+  for (const fs::path& candidate : {binary.parent_path() / "../../../config", fs::path("config"),
+                                    fs::path(SUREFOOT_SOURCE_CONFIG)}) {
     if (fs::is_directory(candidate / "robots", error)) return candidate.lexically_normal();
   }
   return {};

@@ -34,8 +34,8 @@ std::optional<double> parse_real(std::string_view text) {
   text = without_plus(text);
   std::string special;
   const auto dot = text.find('.');
-  if (dot != std::string_view::npos && dot + 1 < text.size() &&
-      (text[dot + 1] | 0x20) >= 'i' && (dot == 0 || (dot == 1 && text[0] == '-'))) {
+  if (dot != std::string_view::npos && dot + 1 < text.size() && (text[dot + 1] | 0x20) >= 'i' &&
+      (dot == 0 || (dot == 1 && text[0] == '-'))) {
     special = std::string(text.substr(0, dot)) + std::string(text.substr(dot + 1));  // .inf, -.inf
     text = special;
   }

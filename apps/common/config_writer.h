@@ -43,8 +43,7 @@ class ConfigWriter {
   }
   void text(const char* key, const std::string& value, const char*) { line(key, quote(value)); }
   template <class Enum>
-  void choice(const char* key, const Enum& value, std::span<const char* const> names,
-              const char*) {
+  void choice(const char* key, const Enum& value, std::span<const char* const> names, const char*) {
     line(key, names[static_cast<std::size_t>(value)]);
   }
   template <class Struct>

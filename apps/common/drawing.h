@@ -74,10 +74,11 @@ struct Shape {
   enum class Kind : std::uint8_t { kPolyline, kFill, kDot, kRing, kText, kRaster };
 
   Kind kind = Kind::kPolyline;
-  std::vector<Point> points;  // kPolyline: the line; kDot, kRing: centre; kText: the baseline's anchor
-  Rectangle box;              // kFill, kRaster
-  double radius = 0;          // kDot, kRing
-  Stroke stroke;              // kFill, kDot: its colour fills
+  std::vector<Point>
+      points;         // kPolyline: the line; kDot, kRing: centre; kText: the baseline's anchor
+  Rectangle box;      // kFill, kRaster
+  double radius = 0;  // kDot, kRing
+  Stroke stroke;      // kFill, kDot: its colour fills
   std::string text;
   TextStyle style;
   Raster raster;

@@ -89,8 +89,8 @@ class Painter {
   // Through a mask, because OpenCV cannot turn text.
   void text(const Shape& shape) {
     const double font_scale = shape.style.size * scale_ * kFontScalePerSize;
-    const int line = std::max(1, static_cast<int>(std::lround(
-                                     shape.style.size * scale_ * (shape.style.bold ? 0.1 : 0.066))));
+    const int line = std::max(1, static_cast<int>(std::lround(shape.style.size * scale_ *
+                                                              (shape.style.bold ? 0.1 : 0.066))));
     int baseline = 0;
     const cv::Size size =
         cv::getTextSize(shape.text, cv::FONT_HERSHEY_SIMPLEX, font_scale, line, &baseline);
@@ -124,7 +124,8 @@ class Painter {
         if (share == 0 || x < 0 || y < 0 || x >= image_.cols || y >= image_.rows) continue;
         auto& pixel = image_.at<cv::Vec3b>(y, x);
         for (int c = 0; c < 3; ++c) {
-          pixel[c] = static_cast<std::uint8_t>((pixel[c] * (255 - share) + channels[c] * share) / 255);
+          pixel[c] =
+              static_cast<std::uint8_t>((pixel[c] * (255 - share) + channels[c] * share) / 255);
         }
       }
     }
@@ -140,9 +141,9 @@ cv::Mat to_mat(const Raster& raster) {
   cv::Mat image(raster.rows, raster.columns, CV_8UC3);
   for (int row = 0; row < raster.rows; ++row) {
     for (int column = 0; column < raster.columns; ++column) {
-      const Colour colour = raster.pixels[static_cast<std::size_t>(row) *
-                                              static_cast<std::size_t>(raster.columns) +
-                                          static_cast<std::size_t>(column)];
+      const Colour colour =
+          raster.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(raster.columns) +
+                        static_cast<std::size_t>(column)];
       image.at<cv::Vec3b>(row, column) = cv::Vec3b(colour.blue, colour.green, colour.red);
     }
   }

@@ -68,7 +68,8 @@ void colour_bar(Drawing& drawing, const Rectangle& map, Limits scale, Scale colo
                 const std::string& label) {
   const Rectangle bar{map.right() + 18, map.y, 14, map.height};
   Raster raster{1, 128, {}};
-  for (int i = 0; i < raster.rows; ++i) raster.pixels.push_back(colour(1 - (i + 0.5) / raster.rows));
+  for (int i = 0; i < raster.rows; ++i)
+    raster.pixels.push_back(colour(1 - (i + 0.5) / raster.rows));
   drawing.raster(bar, std::move(raster));
   drawing.frame(bar, {palette::kFaint, 1, false});
   const std::vector<double> values = ticks(scale, 4);
@@ -222,22 +223,23 @@ Drawing terrain_figure(const RunLog& log, const TerrainFigure& figure) {
 
   int row = 0;
   if (with_truth) {
-    Axes axes = panels.panel(row++, figure.truth, heights, height_colour,
-                             "True ground, with the true traces of body and feet", "height [m]",
-                             false);
+    Axes axes =
+        panels.panel(row++, figure.truth, heights, height_colour,
+                     "True ground, with the true traces of body and feet", "height [m]", false);
     draw_true_traces(log, axes);
   }
   Axes axes = panels.panel(row++, figure.perceived, heights, height_colour,
                            "Perceived map and footholds", "height [m]", !with_truth);
   const FootholdCounts counts = draw_footholds(drawing, log.touchdowns(), figure.O_in_W, axes);
-  axes.legend(
-      {{fmt::format("at the nominal place ({})", counts.nominal), {palette::kFaint, 1, false},
-        LegendItem::Mark::kDot},
-       {fmt::format("moved to bear a foot ({})", counts.moved),
-        {palette::kRed, 1, false}, LegendItem::Mark::kDot},
-       {fmt::format("none in reach ({})", counts.none), {palette::kPurple, 2, false},
-        LegendItem::Mark::kRing},
-       {"unseen", {palette::kUnknown, 1, false}, LegendItem::Mark::kBox}});
+  axes.legend({{fmt::format("nominal place ({})", counts.nominal),
+                {palette::kFaint, 1, false},
+                LegendItem::Mark::kDot},
+               {fmt::format("moved to bear a foot ({})", counts.moved),
+                {palette::kRed, 1, false},
+                LegendItem::Mark::kDot},
+               {fmt::format("none in reach ({})", counts.none),
+                {palette::kPurple, 2, false},
+                LegendItem::Mark::kRing}});
   if (with_truth) {
     const HeightGrid off = difference(figure.perceived, figure.truth);
     Axes last = panels.panel(row++, off, difference_scale(off), difference_colour,

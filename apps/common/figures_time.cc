@@ -91,12 +91,14 @@ Drawing motion_figure(const RunLog& log) {
   };
 
   row(0, {"Forward speed", "", "m/s", 10, 4, true},
-      column(log, [](const RunSample& s) {
-        return horizontal_speed(s.telemetry.v_OB_m_s, yaw_of(s.telemetry.q_OB_wxyz));
-      }),
-      column(log, [](const RunSample& s) {
-        return horizontal_speed(s.truth.v_WB_m_s, yaw_of(s.truth.q_WB_wxyz));
-      }),
+      column(log,
+             [](const RunSample& s) {
+               return horizontal_speed(s.telemetry.v_OB_m_s, yaw_of(s.telemetry.q_OB_wxyz));
+             }),
+      column(log,
+             [](const RunSample& s) {
+               return horizontal_speed(s.truth.v_WB_m_s, yaw_of(s.truth.q_WB_wxyz));
+             }),
       column(log, [](const RunSample& s) { return s.telemetry.velocity_command_B[0]; }));
   row(1, {"Tilt of the trunk", "", "degrees", 10, 4, true},
       column(log, [](const RunSample& s) { return tilt_of(s.telemetry.q_OB_wxyz) * kDegrees; }),
@@ -123,9 +125,11 @@ Drawing torque_figure(const RunLog& log, const robot::RobotModel& robot) {
     std::vector<LegendItem> legend;
     for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
       const Stroke stroke{kLegColours[leg], 1, false};
-      axes.series(t, column(log, [&](const RunSample& s) {
-                    return s.telemetry.joints[robot::joint_index(leg, joint)].torque_Nm;
-                  }),
+      axes.series(t,
+                  column(log,
+                         [&](const RunSample& s) {
+                           return s.telemetry.joints[robot::joint_index(leg, joint)].torque_Nm;
+                         }),
                   stroke);
       legend.push_back({kLegNames[leg], stroke});
     }
@@ -184,13 +188,14 @@ Drawing timing_figure(const std::vector<runtime::TaskReport>& tasks) {
     longest = std::max({longest, task.max_us, static_cast<double>(task.budget_us)});
   }
   // Decades: a mapping task takes thousands of times longer than a small one.
-  const Limits decades{0, std::ceil(std::log10(longest) + 0.05)};
+  const Limits decades{0, std::log10(longest) + 0.1};
   const Rectangle area{kNames, 40, kWidth - kNames - kRight, rows * kRow};
   Axes axes(drawing, area, decades, {0, rows}, {"Task times", "", "", 0, 0, false});
   const auto place = [&](double us) { return std::log10(std::max(1.0, us)); };
   for (int decade = 0; decade <= static_cast<int>(decades.high); ++decade) {
     axes.vertical(decade, {palette::kGrid, 1, false});
-    drawing.text({axes.at(decade, 0).x, area.bottom() + 16}, fmt::format("{:.0f}", std::pow(10, decade)),
+    drawing.text({axes.at(decade, 0).x, area.bottom() + 16},
+                 fmt::format("{:.0f}", std::pow(10, decade)),
                  {11, palette::kFaint, Anchor::kMiddle, false, false});
   }
   drawing.text({area.x + area.width / 2, area.bottom() + 34}, "microseconds, logarithmic",

@@ -80,8 +80,8 @@ void Referee::observe(TimeNs stamp, const autonomy::Telemetry& telemetry, const 
   if (!rules_.has_truth || phase_ == MissionPhase::kStopped) return;
   const double tilt = tilt_of(truth.q_WB_wxyz);
   if (tilt > rules_.fall_tilt_rad) {
-    end(Outcome::kFall, fmt::format("tilted {:.0f} degrees at x = {:.2f} m", tilt * 57.29578,
-                                    p_WB_m_[0]));
+    end(Outcome::kFall,
+        fmt::format("tilted {:.0f} degrees at x = {:.2f} m", tilt * 57.29578, p_WB_m_[0]));
   }
   if (!was_up_) return;
   if (truth.trunk_contact && !trunk_down_) trunk_down_since_ = stamp;

@@ -27,12 +27,12 @@ const char* describe(autonomy::StopReason reason);
 
 struct RefereeRules {
   bool has_truth = true;
-  bool has_goal = true;             // false: mission stand, where staying up is the goal
-  double goal_x_m = 3.0;            // W, on y = 0
-  double goal_tolerance_m = 0.2;    // of the true body at the end
-  double lane_half_width_m = 0;     // 0: no lane
+  bool has_goal = true;              // false: mission stand, where staying up is the goal
+  double goal_x_m = 3.0;             // W, on y = 0
+  double goal_tolerance_m = 0.2;     // of the true body at the end
+  double lane_half_width_m = 0;      // 0: no lane
   double fall_tilt_rad = 1.0471976;  // 60 degrees
-  double fall_contact_s = 0.2;      // trunk on the ground without a break
+  double fall_contact_s = 0.2;       // trunk on the ground without a break
 };
 
 struct Verdict {

@@ -70,7 +70,8 @@ std::string key_figures(const RunFacts& facts) {
   html += figure(fmt::format("{:.2f} %", m.estimate.drift_percent), "drift of the estimate");
   html += figure(fmt::format("{:.1f} mm", 1000 * m.estimate.rms_error_m), "estimate, rms error");
   html += figure(fmt::format("{:.1f} mm", 1000 * facts.map.rmse_m), "map, rms error");
-  html += figure(fmt::format("{:.0f} %", 100 * facts.map.known_fraction), "of the way was measured");
+  html +=
+      figure(fmt::format("{:.0f} %", 100 * facts.map.known_fraction), "of the way was measured");
   html += figure(fmt::format("{:.3f} m", facts.terrain.max_step_m), "tallest step of the ground");
   html += figure(fmt::format("{} / {}", m.foot_slips, m.collisions), "foot slips / body touches");
   html += figure(fmt::format("{:.1f} x", factor), "faster than real time");
@@ -117,9 +118,10 @@ std::string page(const RunFacts& facts, const std::vector<NamedDrawing>& drawing
                         item.name, to_svg(item.drawing), escaped(item.caption));
   }
   html += "<h2>Tasks</h2>\n" + task_table(facts);
-  html += fmt::format("<h2>Configuration</h2><details><summary>every value of this run</summary>"
-                      "<pre>{}</pre></details>\n",
-                      escaped(config_text));
+  html += fmt::format(
+      "<h2>Configuration</h2><details><summary>every value of this run</summary>"
+      "<pre>{}</pre></details>\n",
+      escaped(config_text));
   return html + "</body></html>\n";
 }
 

@@ -35,8 +35,8 @@ fs::path new_folder(const RunRequest& request) {
   std::string name = request.world.substr(0, request.world.find_first_of(":/."));
   if (name.empty()) name = "run";
   const fs::path base =
-      fs::path("out") / fmt::format("{}-{}-s{}", name, fs::path(request.mission).stem().string(),
-                                    request.seed);
+      fs::path("out") /
+      fmt::format("{}-{}-s{}", name, fs::path(request.mission).stem().string(), request.seed);
   fs::path folder = base;
   for (int i = 2; fs::exists(folder); ++i) folder = fmt::format("{}-{}", base.string(), i);
   return folder;
@@ -79,8 +79,8 @@ class Run {
     log_ = std::make_unique<RunLog>(max_ticks_ / kTicksPerSample + 2, backend_->has_truth());
     const Status status = stack_.start(config_, board, runner_, &guard_);
     if (!ok(status)) {
-      throw BackendError(fmt::format("the autonomy refuses the configuration: {}",
-                                     to_string(status)));
+      throw BackendError(
+          fmt::format("the autonomy refuses the configuration: {}", to_string(status)));
     }
   }
 
@@ -105,7 +105,8 @@ class Run {
     std::ofstream file(folder_ / "summary.json");
     file << summary_json(facts_).dump(2) << "\n";
     file.close();
-    if (!file) throw std::runtime_error((folder_ / "summary.json").string() + ": cannot be written");
+    if (!file)
+      throw std::runtime_error((folder_ / "summary.json").string() + ": cannot be written");
     if (draws()) draw();
   }
 

@@ -13,12 +13,12 @@ enum class Keep : std::uint8_t { kNever, kFailures, kAlways };
 
 struct RunOptions {
   RunRequest request;
-  std::filesystem::path out;  // empty: a new folder under out/
-  bool record = true;         // record.mcap
-  bool can_log = false;       // can.log
+  std::filesystem::path out;    // empty: a new folder under out/
+  bool record = true;           // record.mcap
+  bool can_log = false;         // can.log
   Keep report = Keep::kAlways;  // report.html and *.png
-  bool realtime = false;      // hold the simulation back to real time
-  bool quiet = false;         // no progress, no verdict
+  bool realtime = false;        // hold the simulation back to real time
+  bool quiet = false;           // no progress, no verdict
 };
 
 // The program's exit code: 0 goal, 1 not, 2 wrong use or configuration, 3 fault (of the robot, or of

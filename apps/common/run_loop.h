@@ -16,8 +16,8 @@ inline constexpr std::uint64_t kTicksPerSample = 4;  // 8 ms
 
 struct LoopResult {
   double wall_time_s = 0;
-  bool interrupted = false;        // SIGINT or SIGTERM
-  Status status = Status::kOk;     // other than kOk: the clock ended the run
+  bool interrupted = false;     // SIGINT or SIGTERM
+  Status status = Status::kOk;  // other than kOk: the clock ended the run
 };
 
 // Runs until the mission is over, the referee ends it, a signal comes or `max_ticks` are done.

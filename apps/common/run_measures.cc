@@ -85,8 +85,7 @@ EstimateErrors estimate_errors(const RunLog& log, std::size_t begin, std::size_t
   double sum = 0;
   for (std::size_t i = begin; i < end; ++i) {
     const RunSample& sample = log.samples()[i];
-    const double off =
-        distance(alignment.to_world(sample.telemetry.p_OB_m), sample.truth.p_WB_m);
+    const double off = distance(alignment.to_world(sample.telemetry.p_OB_m), sample.truth.p_WB_m);
     sum += off * off;
     errors.end_error_m = off;
   }

@@ -9,8 +9,8 @@
 namespace surefoot::apps {
 
 struct EstimateErrors {
-  double end_error_m = 0;    // |estimated - true| position at the end of walking, O aligned with W by
-                             // yaw and shift at its beginning
+  double end_error_m = 0;  // |estimated - true| position at the end of walking, O aligned with W by
+                           // yaw and shift at its beginning
   double drift_percent = 0;  // end_error_m over the path length
   double rms_error_m = 0;    // over the walk
 };
@@ -20,9 +20,9 @@ struct RunMeasures {
   double walk_s = 0;           // from the first sample of walking to the last
   double path_length_m = 0;    // of the body in the plane, in legs of at least 5 cm (sway left out)
   double mean_speed_m_s = 0;   // way made towards the goal over walk_s
-  std::uint64_t foot_slips = 0;   // contacts in which a sole slipped more than 20 mm
-  std::uint64_t collisions = 0;   // times that trunk, thigh or shank came to touch the ground
-  EstimateErrors estimate;     // zero without truth
+  std::uint64_t foot_slips = 0;  // contacts in which a sole slipped more than 20 mm
+  std::uint64_t collisions = 0;  // times that trunk, thigh or shank came to touch the ground
+  EstimateErrors estimate;       // zero without truth
 };
 
 // goal_x_m: in W, on y = 0; negative: none. Without truth the estimate stands in for it.

@@ -35,7 +35,9 @@ runtime::Task mapping_task(Autonomy& autonomy) {
   task.latency_ticks = autonomy::kMapLatencyTicks;
   task.budget_us = kMappingBudget_us;
   task.self = &autonomy;
-  task.release = [](void* self, const TickInputs& inputs) { return of(self).begin_mapping(inputs); };
+  task.release = [](void* self, const TickInputs& inputs) {
+    return of(self).begin_mapping(inputs);
+  };
   task.run = [](void* self) { of(self).run_mapping(); };
   task.publish = [](void* self, TickOutputs&) { of(self).publish_mapping(); };
   return task;

@@ -11,10 +11,11 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 Json task_json(const runtime::TaskReport& task) {
-  return {{"name", task.name},         {"period_us", task.period_us}, {"budget_us", task.budget_us},
-          {"count", task.count},       {"p50_us", task.p50_us},       {"p99_us", task.p99_us},
-          {"max_us", task.max_us},     {"overruns", task.overruns},   {"skipped", task.skipped},
-          {"late_publishes", task.late_publishes}};
+  return {{"name", task.name},           {"period_us", task.period_us},
+          {"budget_us", task.budget_us}, {"count", task.count},
+          {"p50_us", task.p50_us},       {"p99_us", task.p99_us},
+          {"max_us", task.max_us},       {"overruns", task.overruns},
+          {"skipped", task.skipped},     {"late_publishes", task.late_publishes}};
 }
 
 Json counters_json(const RunFacts& facts) {

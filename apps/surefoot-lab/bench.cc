@@ -63,7 +63,8 @@ int bench_pictures() {
 
 int bench(const std::string& name, Stack& stack) {
   if (!name.empty() && name != "run" && name != "pictures") {
-    std::fputs(fmt::format("bench: '{}' is unknown; there are: run pictures\n", name).c_str(), stderr);
+    std::fputs(fmt::format("bench: '{}' is unknown; there are: run pictures\n", name).c_str(),
+               stderr);
     return 2;
   }
   if (name != "run") bench_pictures();

@@ -49,9 +49,7 @@ class Campaign {
   using Clock = std::chrono::steady_clock;
 
   std::uint64_t seed(std::size_t index) const { return options_.seeds.first + index; }
-  fs::path folder(std::size_t index) const {
-    return folder_ / fmt::format("seed-{}", seed(index));
-  }
+  fs::path folder(std::size_t index) const { return folder_ / fmt::format("seed-{}", seed(index)); }
 
   std::vector<std::string> arguments(std::size_t index) const {
     const RunRequest& request = options_.request;
@@ -118,9 +116,9 @@ class Campaign {
     Json summary = Json::parse(file, nullptr, false);
     if (summary.is_discarded()) {
       const std::string how =
-          WIFSIGNALED(status) ? fmt::format("the process ended by signal {}", WTERMSIG(status))
-                              : fmt::format("the process ended with code {} and no summary",
-                                            WEXITSTATUS(status));
+          WIFSIGNALED(status)
+              ? fmt::format("the process ended by signal {}", WTERMSIG(status))
+              : fmt::format("the process ended with code {} and no summary", WEXITSTATUS(status));
       summary = {{"seed", seed(index)}, {"outcome", "fault"}, {"reason", how}};
     }
     const bool goal = summary.value("outcome", "") == "goal";
@@ -128,8 +126,8 @@ class Campaign {
     std::error_code error;
     if (goal && options_.record == "failures") fs::remove(folder(index) / "record.mcap", error);
     if (!goal) {
-      std::fputs(fmt::format("\rseed {}: {}: {}{:20}\n", seed(index),
-                             summary.value("outcome", ""), summary.value("reason", ""), "")
+      std::fputs(fmt::format("\rseed {}: {}: {}{:20}\n", seed(index), summary.value("outcome", ""),
+                             summary.value("reason", ""), "")
                      .c_str(),
                  stderr);
     }
@@ -138,8 +136,8 @@ class Campaign {
 
   void show() const {
     const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
-    const double left = elapsed / static_cast<double>(done_) *
-                        static_cast<double>(results_.size() - done_);
+    const double left =
+        elapsed / static_cast<double>(done_) * static_cast<double>(results_.size() - done_);
     std::fputs(fmt::format("\r{} of {} runs, {} at the goal, {:.0f} s left   ", done_,
                            results_.size(), goals_, left)
                    .c_str(),
@@ -183,16 +181,15 @@ int campaign(const CampaignOptions& options) {
   std::ofstream file(folder / "campaign.json");
   file << json.dump(2) << "\n";
   file.close();
-  std::fputs(fmt::format("{} of {} at the goal ({:.0f} %, 95 % interval {:.0f} to {:.0f} %), median "
-                         "{:.2f} m/s\n{}\n",
-                         json["outcomes"]["goal"].get<int>(), options.seeds.count(),
-                         100 * json["success_rate"].get<double>(),
-                         100 * json["wilson95"][0].get<double>(),
-                         100 * json["wilson95"][1].get<double>(),
-                         json["median_speed_m_s"].get<double>(),
-                         (folder / "campaign.json").string())
-                 .c_str(),
-             stdout);
+  std::fputs(
+      fmt::format("{} of {} at the goal ({:.0f} %, 95 % interval {:.0f} to {:.0f} %), median "
+                  "{:.2f} m/s\n{}\n",
+                  json["outcomes"]["goal"].get<int>(), options.seeds.count(),
+                  100 * json["success_rate"].get<double>(), 100 * json["wilson95"][0].get<double>(),
+                  100 * json["wilson95"][1].get<double>(), json["median_speed_m_s"].get<double>(),
+                  (folder / "campaign.json").string())
+          .c_str(),
+      stdout);
   return file ? 0 : 3;
 }
 

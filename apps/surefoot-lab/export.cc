@@ -29,7 +29,9 @@ class CsvRow : public FieldVisitor<CsvRow> {
   void scalar(const char* name, const T& value) {
     if (!out_.empty()) out_ += ",";
     if (what_ == What::kNames) {
-      out_ += path_ + name;
+      // An item of a list has no name of its own: its path ends with the index and a dot.
+      const bool unnamed = *name == '\0' && !path_.empty();
+      out_ += unnamed ? path_.substr(0, path_.size() - 1) : path_ + name;
     } else if constexpr (std::is_floating_point_v<T>) {
       out_ += number_text(static_cast<double>(value));
     } else if constexpr (std::is_enum_v<T>) {
@@ -134,9 +136,9 @@ int to_html(const std::string& record, const fs::path& folder, Stack& stack) {
     log.add(executive.inputs().stamp, executive.outputs().telemetry, nullptr);
   }
   const autonomy::Telemetry& last = executive.outputs().telemetry;
-  facts.verdict = {last.phase == autonomy::MissionPhase::kArrived ? Outcome::kGoal
-                                                                  : Outcome::kAborted,
-                   "from the record, without ground truth"};
+  facts.verdict = {
+      last.phase == autonomy::MissionPhase::kArrived ? Outcome::kGoal : Outcome::kAborted,
+      "from the record, without ground truth"};
   facts.config_hash = config_hash(config);
   facts.measures = measure(log, goal_x_m(config));
   facts.ticks = executive.ticks();

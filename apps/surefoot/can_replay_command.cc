@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 constexpr const char* kLegNames[] = {"FR", "FL", "HR", "HL"};
 constexpr const char* kJointNames[] = {"abad", "hip", "knee"};
 constexpr double kGravity_m_s2 = 9.81;
-constexpr TimeNs kLongPause = milliseconds(1000);  // a longer one in the log is not filled with ticks
+constexpr TimeNs kLongPause =
+    milliseconds(1000);  // a longer one in the log is not filled with ticks
 
 // The estimation path needs an IMU and a bus log has none: the trunk is taken as level and still.
 class LevelEstimator {
@@ -149,14 +150,15 @@ int can_replay(const std::string& log, const RunRequest& request, const fs::path
     std::fputs((log + ": cannot be read\n").c_str(), stderr);
     return 2;
   }
-  const fs::path folder = out.empty() ? fs::path("out") / ("can-" + fs::path(log).stem().string())
-                                      : out;
+  const fs::path folder =
+      out.empty() ? fs::path("out") / ("can-" + fs::path(log).stem().string()) : out;
   std::error_code error;
   fs::create_directories(folder, error);
   Decoder decoder(folder, config);
   if (const Status status = decoder.configure(); !ok(status)) {
-    std::fputs(fmt::format("{}: the wiring is refused: {}\n", request.robot, to_string(status)).c_str(),
-               stderr);
+    std::fputs(
+        fmt::format("{}: the wiring is refused: {}\n", request.robot, to_string(status)).c_str(),
+        stderr);
     return 2;
   }
   hal::CandumpReader reader(file);

@@ -12,7 +12,6 @@ namespace surefoot::apps {
 // the contact estimation's kinematics on it and writes OUT/joints.csv: one row per tick of 2 ms in
 // which a frame came. 0: done (malformed lines are reported with their number). 1: no frame in the
 // whole log. 2: wrong use or configuration. 3: joints.csv could not be written.
-int can_replay(const std::string& log, const RunRequest& request,
-               const std::filesystem::path& out);
+int can_replay(const std::string& log, const RunRequest& request, const std::filesystem::path& out);
 
 }  // namespace surefoot::apps

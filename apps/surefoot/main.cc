@@ -29,7 +29,8 @@ int check(const RunRequest& request) {
 }
 
 int info() {
-  std::string text = fmt::format("surefoot {}\nbuild     {}\nbackends ", version_text(), build_text());
+  std::string text =
+      fmt::format("surefoot {}\nbuild     {}\nbackends ", version_text(), build_text());
   for (const std::string& name : backend_names()) text += " " + name;
   text += fmt::format(" replay\nconfig    {}\n\nstatic memory of the autonomy\n",
                       config_folder().string());
@@ -55,11 +56,15 @@ void add_set(CLI::App* command, RunRequest& request) {
 
 CLI::App* add_run(CLI::App& app, Arguments& arguments) {
   RunRequest& request = arguments.run.request;
-  CLI::App* command = app.add_subcommand("run", "one run; exit 0 when the mission reached its goal");
+  CLI::App* command =
+      app.add_subcommand("run", "one run; exit 0 when the mission reached its goal");
   command->add_option("--robot", request.robot, "name in config/robots, or a file")->required();
-  command->add_option("--world", request.world, "name in config/worlds[:parameter=value,...], or a file")
+  command
+      ->add_option("--world", request.world,
+                   "name in config/worlds[:parameter=value,...], or a file")
       ->required();
-  command->add_option("--mission", request.mission, "name in config/missions, or a file")->required();
+  command->add_option("--mission", request.mission, "name in config/missions, or a file")
+      ->required();
   command->add_option("--hal", request.hal, "backend")->capture_default_str();
   command->add_option("--seed", request.seed, "decides every draw")->capture_default_str();
   command->add_option("--out", arguments.run.out, "folder for the results");
@@ -76,7 +81,8 @@ CLI::App* add_run(CLI::App& app, Arguments& arguments) {
 
 CLI::App* add_check(CLI::App& app, Arguments& arguments) {
   RunRequest& request = arguments.run.request;
-  CLI::App* command = app.add_subcommand("check", "validates configuration; exit 2 when it is wrong");
+  CLI::App* command =
+      app.add_subcommand("check", "validates configuration; exit 2 when it is wrong");
   command->add_option("--robot", request.robot, "name or file");
   command->add_option("--world", request.world, "name or file");
   command->add_option("--mission", request.mission, "name or file");
@@ -114,9 +120,9 @@ int dispatch(int argc, char** argv, Stack& stack) {
   if (check_command->parsed()) return check(arguments.run.request);
   if (info_command->parsed()) return info();
   if (replay_command->parsed()) return replay(arguments.input, arguments.run.out, stack);
-  return can_command->parsed() ? can_replay(arguments.input, arguments.run.request,
-                                            arguments.run.out)
-                               : 2;
+  return can_command->parsed()
+             ? can_replay(arguments.input, arguments.run.request, arguments.run.out)
+             : 2;
 }
 
 }  // namespace

@@ -41,11 +41,13 @@ int replay(const std::string& record, const std::filesystem::path& out, Stack& s
   if (!issues.empty()) return refuse(issues);
 
   runtime::RecordedRunner runner(nullptr, board.overruns());
-  if (const Status status = stack.start(config, board.board(autonomy::kTickPeriod), runner, nullptr); !ok(status)) {
-    std::fputs(fmt::format("{}: the autonomy refuses the configuration: {}\n", record,
-                           to_string(status))
-                   .c_str(),
-               stderr);
+  if (const Status status =
+          stack.start(config, board.board(autonomy::kTickPeriod), runner, nullptr);
+      !ok(status)) {
+    std::fputs(
+        fmt::format("{}: the autonomy refuses the configuration: {}\n", record, to_string(status))
+            .c_str(),
+        stderr);
     return 2;
   }
   hal::ReplayComparer comparer;
@@ -76,7 +78,8 @@ int replay(const std::string& record, const std::filesystem::path& out, Stack& s
                             {"replayed", first.replayed}};
   }
   if (!out.empty() && !write_result(out, result)) {
-    std::fputs(fmt::format("{}: cannot be written\n", (out / "replay.json").string()).c_str(), stderr);
+    std::fputs(fmt::format("{}: cannot be written\n", (out / "replay.json").string()).c_str(),
+               stderr);
     return 3;
   }
   return comparer.identical() && complete ? 0 : 1;

@@ -103,9 +103,10 @@ TEST(ConfigLoader, UnknownKey) {
 }
 
 TEST(ConfigLoader, MissingKeyNamesTheGroupsLine) {
-  EXPECT_EQ(issues_of(replaced("  torque_Nm: 17.5\n", "")),
-            "machine.yaml:5: main.torque_Nm: missing; expected real number (at the joint), allowed: "
-            "0 to 20\n");
+  EXPECT_EQ(
+      issues_of(replaced("  torque_Nm: 17.5\n", "")),
+      "machine.yaml:5: main.torque_Nm: missing; expected real number (at the joint), allowed: "
+      "0 to 20\n");
 }
 
 TEST(ConfigLoader, OutOfRange) {
@@ -125,12 +126,14 @@ TEST(ConfigLoader, NotFinite) {
 }
 
 TEST(ConfigLoader, WrongType) {
-  EXPECT_EQ(issues_of(replaced("17.5", "fast")),
-            "machine.yaml:6: main.torque_Nm: wrong type: 'fast' is not a real number, allowed: 0 to "
-            "20\n");
-  EXPECT_EQ(issues_of(replaced("17.5", "\"17.5\"")),
-            "machine.yaml:6: main.torque_Nm: wrong type: '17.5' is not a real number, allowed: 0 to "
-            "20\n");
+  EXPECT_EQ(
+      issues_of(replaced("17.5", "fast")),
+      "machine.yaml:6: main.torque_Nm: wrong type: 'fast' is not a real number, allowed: 0 to "
+      "20\n");
+  EXPECT_EQ(
+      issues_of(replaced("17.5", "\"17.5\"")),
+      "machine.yaml:6: main.torque_Nm: wrong type: '17.5' is not a real number, allowed: 0 to "
+      "20\n");
   EXPECT_EQ(issues_of(replaced("bus: 2", "bus: 2.5")),
             "machine.yaml:7: main.bus: wrong type: '2.5' is not an integer, allowed: 0 to 3\n");
   EXPECT_EQ(issues_of(replaced("enabled: true", "enabled: 1")),

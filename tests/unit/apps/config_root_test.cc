@@ -80,8 +80,9 @@ TEST(ConfigRoot, WrongWorldParameters) {
             "--world: world.height: not a parameter of this world; allowed: friction\n");
   EXPECT_EQ(issues_of(cross("clutter:height=5")),
             "--world: world.height_m: 5 is out of range, allowed: 0 to 0.5\n");
-  EXPECT_EQ(issues_of(cross("clutter:height=tall")),
-            "--world: world.height_m: wrong type: 'tall' is not a real number, allowed: 0 to 0.5\n");
+  EXPECT_EQ(
+      issues_of(cross("clutter:height=tall")),
+      "--world: world.height_m: wrong type: 'tall' is not a real number, allowed: 0 to 0.5\n");
 }
 
 TEST(ConfigRoot, UnknownNamesListTheKnownOnes) {

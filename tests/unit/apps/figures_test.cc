@@ -11,8 +11,8 @@
 namespace surefoot::apps {
 namespace {
 
-using control::FootholdReason;
 using autonomy::MissionPhase;
+using control::FootholdReason;
 
 // Three metres of trot over a field of bumps, with a little drift.
 RunLog synthetic_log() {
@@ -44,8 +44,8 @@ RunLog synthetic_log() {
       truth.feet[leg].p_WF_m = {x + 0.03 * std::sin(12 * t), y, 0};
       for (std::size_t joint = 0; joint < 3; ++joint) {
         telemetry.joints[robot::joint_index(leg, joint)].torque_Nm =
-            (4.0 + 3.0 * static_cast<double>(joint)) *
-            std::sin(12 * t + static_cast<double>(leg)) * (t > 1 ? 1 : 0.1);
+            (4.0 + 3.0 * static_cast<double>(joint)) * std::sin(12 * t + static_cast<double>(leg)) *
+            (t > 1 ? 1 : 0.1);
       }
     }
     log.add(TimeNs{static_cast<std::int64_t>(t * 1e9)}, telemetry, &truth);

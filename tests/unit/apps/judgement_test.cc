@@ -95,9 +95,12 @@ TEST(Referee, LeavingTheLaneAborts) {
 
 TEST(Referee, StopReasonsHaveTheirOutcomesAndExitCodes) {
   const std::pair<StopReason, Outcome> expected[] = {
-      {StopReason::kNoFoothold, Outcome::kNoPath},   {StopReason::kDriveSilent, Outcome::kFault},
-      {StopReason::kImuSilent, Outcome::kFault},     {StopReason::kDriveFault, Outcome::kFault},
-      {StopReason::kMissionTimeout, Outcome::kTimeout}, {StopReason::kOperator, Outcome::kAborted},
+      {StopReason::kNoFoothold, Outcome::kNoPath},
+      {StopReason::kDriveSilent, Outcome::kFault},
+      {StopReason::kImuSilent, Outcome::kFault},
+      {StopReason::kDriveFault, Outcome::kFault},
+      {StopReason::kMissionTimeout, Outcome::kTimeout},
+      {StopReason::kOperator, Outcome::kAborted},
       {StopReason::kTilt, Outcome::kFall}};
   for (const auto& [reason, outcome] : expected) {
     const Verdict verdict = judge(in_phase(MissionPhase::kStopped, reason), body_at(1));
@@ -151,7 +154,7 @@ TEST(RunMeasures, ASlipIsCountedOncePerContact) {
   RunLog log(100, true);
   for (int i = 0; i < 40; ++i) {
     sim::Truth truth = body_at(0);
-    truth.feet[1].contact = i != 20;                 // two contacts
+    truth.feet[1].contact = i != 20;                  // two contacts
     truth.feet[1].slip_m = i < 20 ? 0.004 * i : 0.1;  // 76 mm in the first, none in the second
     log.add(at(i * 0.008), in_phase(MissionPhase::kWalk), &truth);
   }

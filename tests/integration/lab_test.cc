@@ -1,0 +1,72 @@
+// Campaigns and exports.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/integration/program.h"
+
+namespace surefoot {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kStand =
+    " --robot mini_cheetah --world flat --mission stand --set mission.stand_s=0.1 ";
+
+TEST(Lab, CampaignCountsAndKeepsTheRecordsOfFailures) {
+  const Scratch scratch;
+  const ProgramResult good = run_program("surefoot-lab campaign" + kStand +
+                                         "--seeds 3..4 --jobs 2 --out " + scratch.text("good"));
+  ASSERT_EQ(good.code, 0) << good.error;
+  const nlohmann::json json = read_json(scratch.path("good") / "campaign.json");
+  ASSERT_EQ(json["runs"].size(), 2u);
+  EXPECT_EQ(json["runs"][0]["seed"], 3);
+  EXPECT_EQ(json["runs"][1]["seed"], 4);
+  EXPECT_EQ(json["outcomes"]["goal"], 2);
+  EXPECT_EQ(json["success_rate"], 1.0);
+  EXPECT_NEAR(json["wilson95"][0].get<double>(), 0.342, 0.001);
+  EXPECT_FALSE(fs::exists(scratch.path("good") / "seed-3" / "record.mcap"));
+
+  const ProgramResult bad =
+      run_program("surefoot-lab campaign" + kStand +
+                  "--set mission.timeout_s=1 --seeds 1..1 --out " + scratch.text("bad"));
+  ASSERT_EQ(bad.code, 0) << bad.error;
+  const nlohmann::json failed = read_json(scratch.path("bad") / "campaign.json");
+  EXPECT_EQ(failed["outcomes"]["timeout"], 1);
+  EXPECT_EQ(failed["success_rate"], 0.0);
+  EXPECT_TRUE(fs::exists(scratch.path("bad") / "seed-1" / "record.mcap"));
+}
+
+TEST(Lab, ExportedCanLogEqualsTheOneOfTheRun) {
+  const Scratch scratch;
+  ASSERT_EQ(run_program("surefoot run" + kStand + "--can-log --report off --quiet --out " +
+                        scratch.text("run"))
+                .code,
+            0);
+  const std::string record = scratch.text("run/record.mcap");
+  for (const char* format : {"candump", "csv", "html"}) {
+    const ProgramResult result = run_program("surefoot-lab export " + record + " --to " + format +
+                                             " --out " + scratch.text("export"));
+    EXPECT_EQ(result.code, 0) << format << result.error;
+  }
+  const auto text = [](const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return std::string((std::istreambuf_iterator<char>(in)), {});
+  };
+  const std::string log = text(scratch.path("run") / "can.log");
+  EXPECT_GT(log.size(), 100000u);
+  EXPECT_EQ(log, text(scratch.path("export") / "can.log"));
+  EXPECT_TRUE(fs::exists(scratch.path("export") / "report.html"));
+
+  std::ifstream csv(scratch.path("export") / "ticks.csv");
+  std::string head;
+  std::string row;
+  std::getline(csv, head);
+  std::getline(csv, row);
+  EXPECT_EQ(head.rfind("tick,time_s,phase,stop_reason,p_OB_m.0,p_OB_m.1,", 0), 0u) << head;
+  EXPECT_EQ(std::count(head.begin(), head.end(), ','), std::count(row.begin(), row.end(), ','));
+}
+
+}  // namespace
+}  // namespace surefoot
