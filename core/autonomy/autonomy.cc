@@ -56,6 +56,8 @@ void Autonomy::receive() {
   const bool still = mission_.phase() == MissionPhase::kEnableDrives;
   imu_refused_ += estimator_.update(inputs_->stamp, {inputs_->imu.data(), inputs_->imu.size()},
                                     bus_.states(), locomotion_.gait_phases(), still);
+  // Folded on the ground no foot bears load: the accelerometer alone would carry the trunk away.
+  if (still) estimator_.place(Vector3::Zero());
   if (walking_ready_) history_.push(estimator_.state());
 }
 
@@ -77,9 +79,14 @@ const mapping::MapWindow* Autonomy::window() const {
   return config_.mapping.enabled ? &map_.window() : nullptr;
 }
 
-// Stand-up is over: O gets its place on the ground below the trunk, the start pad enters the map.
+// Stand-up is over: O gets its place on the ground below the trunk, where the feet say that it is, and
+// the start pad enters the map.
 void Autonomy::begin_walking(const estimation::RobotState& state) {
-  estimator_.place(Vector3(0.0, 0.0, config_.control.body.height_m));
+  double below_m = 0;  // of the feet's mean, from the trunk
+  for (const estimation::FootState& foot : state.feet) {
+    below_m -= (state.R_OB * foot.p_B_m)[2] / static_cast<double>(robot::kLegs);
+  }
+  estimator_.place(Vector3(0.0, 0.0, below_m + model_.foot_radius_m));
   locomotion_.start(estimator_.state());
   walking_ready_ = true;
   mapping::AssumedPad pad;
