@@ -1,0 +1,120 @@
+#include "core/autonomy/mission.h"
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/rotations.h"
+
+namespace surefoot::autonomy {
+namespace {
+
+constexpr double kStep_s = 0.002;
+
+MissionConfig cross() {
+  MissionConfig config;
+  config.kind = MissionConfig::Kind::kCross;
+  config.goal_x_m = 3.0;
+  config.goal_tolerance_m = 0.05;
+  config.speed_m_s = 0.5;
+  config.line_gain_1_s = 0.8;
+  config.heading_gain_1_s = 1.5;
+  config.max_lateral_m_s = 0.1;
+  config.max_yaw_rate_rad_s = 0.5;
+  config.rest_s = 0.1;
+  config.settle_s = 0.2;
+  config.timeout_s = 20.0;
+  return config;
+}
+
+MissionFacts healthy() {
+  MissionFacts facts;
+  facts.drives_ready = true;
+  facts.stand_up_done = true;
+  facts.all_in_stance = true;
+  return facts;
+}
+
+// Ticks until the phase is reached; -1: not within the limit.
+int ticks_until(Mission& mission, MissionPhase phase, const estimation::RobotState& state,
+                const MissionFacts& facts, int limit) {
+  for (int tick = 0; tick < limit; ++tick) {
+    if (mission.phase() == phase) return tick;
+    mission.update(state, facts, kStep_s);
+  }
+  return -1;
+}
+
+TEST(Mission, GoesFromRestToWalkingInOrder) {
+  Mission mission;
+  mission.reset(cross());
+  const estimation::RobotState state;
+  EXPECT_EQ(mission.phase(), MissionPhase::kEnableDrives);
+  EXPECT_NEAR(ticks_until(mission, MissionPhase::kStandUp, state, healthy(), 1000), 50, 1);
+  EXPECT_NEAR(ticks_until(mission, MissionPhase::kSettle, state, healthy(), 1000), 1, 1);
+  EXPECT_FALSE(mission.stepping());
+  EXPECT_NEAR(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 100, 1);
+  EXPECT_TRUE(mission.stepping());
+}
+
+TEST(Mission, ArrivesByTheRobotsOwnEstimateAndHoldsBeforeItIsFinished) {
+  Mission mission;
+  mission.reset(cross());
+  estimation::RobotState state;
+  ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 0);
+  state.p_OB_m = Vector3(2.94, 0.0, 0.3);
+  mission.update(state, healthy(), kStep_s);
+  EXPECT_EQ(mission.phase(), MissionPhase::kWalk);
+  state.p_OB_m[0] = 2.96;
+  mission.update(state, healthy(), kStep_s);
+  EXPECT_EQ(mission.phase(), MissionPhase::kArrived);
+  EXPECT_FALSE(mission.finished());
+  for (int tick = 0; tick < 300; ++tick) mission.update(state, healthy(), kStep_s);
+  EXPECT_TRUE(mission.finished());
+  EXPECT_EQ(mission.stop_reason(), StopReason::kNone);
+}
+
+TEST(Mission, SteersBackToTheLineWhateverTheHeading) {
+  Mission mission;
+  mission.reset(cross());
+  estimation::RobotState state;
+  ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 0);
+  state.p_OB_m = Vector3(1.0, 0.1, 0.3);
+  state.yaw_rad = 0.3;
+  mission.update(state, healthy(), kStep_s);
+  const control::VelocityCommand& command = mission.command();
+  const Matrix3 R = geometry::rotation_z(0.3);
+  const Vector3 velocity_O = R * Vector3(command.forward_m_s, command.left_m_s, 0.0);
+  EXPECT_NEAR(velocity_O[0], 0.5, 1e-12);
+  EXPECT_NEAR(velocity_O[1], -0.08, 1e-12);
+  EXPECT_NEAR(command.yaw_rate_rad_s, -0.45, 1e-12);
+}
+
+TEST(Mission, AFaultStopsItOnceAndKeepsItsReason) {
+  Mission mission;
+  mission.reset(cross());
+  const estimation::RobotState state;
+  ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 0);
+  MissionFacts facts = healthy();
+  facts.fault = StopReason::kDriveSilent;
+  mission.update(state, facts, kStep_s);
+  EXPECT_EQ(mission.phase(), MissionPhase::kStopped);
+  EXPECT_TRUE(mission.finished());
+  EXPECT_FALSE(mission.stepping());
+  facts.fault = StopReason::kTilt;
+  mission.update(state, facts, kStep_s);
+  EXPECT_EQ(mission.stop_reason(), StopReason::kDriveSilent);
+}
+
+TEST(Mission, SilentDrivesAndTimeEndItWithTheirReasons) {
+  const estimation::RobotState state;
+  Mission silent;
+  silent.reset(cross());
+  EXPECT_GE(ticks_until(silent, MissionPhase::kStopped, state, MissionFacts{}, 1000), 500);
+  EXPECT_EQ(silent.stop_reason(), StopReason::kDriveSilent);
+  Mission slow;
+  slow.reset(cross());
+  EXPECT_GE(ticks_until(slow, MissionPhase::kStopped, state, healthy(), 20000), 9000);
+  EXPECT_EQ(slow.stop_reason(), StopReason::kMissionTimeout);
+}
+
+}  // namespace
+}  // namespace surefoot::autonomy

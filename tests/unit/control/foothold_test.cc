@@ -1,0 +1,112 @@
+// The Raibert point and its correction by the map.
+#include "core/control/foothold.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "core/robot/kinematics.h"
+
+namespace surefoot::control {
+namespace {
+
+robot::RobotModel model() {
+  robot::RobotModel m;
+  m.abad_x_m = 0.19;
+  m.abad_y_m = 0.049;
+  m.hip_offset_m = 0.062;
+  m.foot_radius_m = 0.0175;
+  return m;
+}
+
+FootholdConfig config() {
+  FootholdConfig c;
+  c.velocity_feedback_s = 0.03;
+  c.max_offset_m = 0.15;
+  c.search_radius_m = 0.10;
+  return c;
+}
+
+estimation::RobotState moving() {
+  estimation::RobotState state;
+  state.p_OB_m = Vector3(1.0, 0.2, 0.3);
+  state.v_OB_m_s = Vector3(0.4, 0.0, 0.0);
+  return state;
+}
+
+// A window whose cells are level and steppable but for a band in x that is not.
+std::unique_ptr<mapping::MapWindow> window_with_band(double from_x_m, double to_x_m) {
+  auto window = std::make_unique<mapping::MapWindow>();
+  window->stamp = milliseconds(1);
+  window->cell_size_m = 0.015;
+  window->first = {20, -40};
+  for (std::int32_t iy = 0; iy < mapping::kWindowSide; ++iy) {
+    for (std::int32_t ix = 0; ix < mapping::kWindowSide; ++ix) {
+      const double x = (20 + ix + 0.5) * 0.015;
+      mapping::WindowCell& cell =
+          window->cells[static_cast<std::size_t>(iy * mapping::kWindowSide + ix)];
+      cell.state = mapping::CellState::kMeasured;
+      cell.height_m = 0.02F;
+      cell.margin_cells = 3;
+      cell.foothold = x > from_x_m && x < to_x_m ? mapping::FootholdClass::kNotSteppable
+                                                 : mapping::FootholdClass::kSteppable;
+    }
+  }
+  return window;
+}
+
+TEST(Footholds, FollowEquationsSevenToNine) {
+  FootholdPlanner planner;
+  planner.reset(config(), model());
+  VelocityCommand command;
+  command.forward_m_s = 0.5;
+  const Vector3 point = planner.nominal_O_m(robot::kFrontLeft, moving(), command, 0.1, 0.2, 0.05);
+  // body + v t_touchdown + hip + v T/2 + k (v - v_command)
+  EXPECT_NEAR(point[0], 1.0 + 0.04 + 0.19 + 0.04 - 0.003, 1e-12);
+  EXPECT_NEAR(point[1], 0.2 + 0.111, 1e-12);
+  EXPECT_NEAR(point[2], 0.05 + 0.0175, 1e-12);
+}
+
+TEST(Footholds, TheOffsetIsBoundedHoweverFastTheBodyIs) {
+  FootholdPlanner planner;
+  planner.reset(config(), model());
+  estimation::RobotState state = moving();
+  state.v_OB_m_s = Vector3(10.0, -10.0, 0.0);
+  const Vector3 point =
+      planner.nominal_O_m(robot::kHindRight, state, VelocityCommand{}, 0.0, 0.2, 0.0);
+  EXPECT_NEAR(point[0], 1.0 - 0.19 + 0.15, 1e-12);
+  EXPECT_NEAR(point[1], 0.2 - 0.111 - 0.15, 1e-12);
+}
+
+TEST(Footholds, StayWhereTheGroundIsGoodAndTakeItsHeight) {
+  FootholdPlanner planner;
+  planner.reset(config(), model());
+  const auto window = window_with_band(9.0, 9.1);
+  const Foothold foothold = planner.choose(Vector3(1.0, 0.1, 0.5), window.get());
+  EXPECT_EQ(foothold.reason, FootholdReason::kNominal);
+  EXPECT_EQ(foothold.position_O_m[0], 1.0);
+  EXPECT_NEAR(foothold.position_O_m[2], 0.02 + 0.0175, 1e-6);
+}
+
+TEST(Footholds, MoveOffBadGroundByTheShorterWay) {
+  FootholdPlanner planner;
+  planner.reset(config(), model());
+  const auto window = window_with_band(0.94, 1.02);
+  const Foothold foothold = planner.choose(Vector3(1.0, 0.1, 0.0), window.get());
+  EXPECT_EQ(foothold.reason, FootholdReason::kMoved);
+  EXPECT_GT(foothold.position_O_m[0], 1.02);
+  EXPECT_LT(foothold.position_O_m[0], 1.05);
+}
+
+TEST(Footholds, AreRefusedWhereNothingInReachBearsAFoot) {
+  FootholdPlanner planner;
+  planner.reset(config(), model());
+  const auto window = window_with_band(0.8, 1.2);
+  EXPECT_EQ(planner.choose(Vector3(1.0, 0.1, 0.0), window.get()).reason, FootholdReason::kNone);
+  // Outside the window nothing is known.
+  EXPECT_EQ(planner.choose(Vector3(9.0, 0.1, 0.0), window.get()).reason, FootholdReason::kNone);
+  EXPECT_EQ(planner.choose(Vector3(1.0, 0.1, 0.0), nullptr).reason, FootholdReason::kMapOff);
+}
+
+}  // namespace
+}  // namespace surefoot::control
