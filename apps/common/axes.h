@@ -16,8 +16,8 @@ struct Limits {
   double span() const { return high - low; }
 };
 
-// The smallest interval with all values that is at least `smallest_span` wide, widened by `margin` of
-// its span at either end.
+// The smallest interval with all values that is at least `smallest_span` wide, widened by `margin`
+// of its span at either end.
 Limits limits_of(std::span<const double> values, double margin = 0.05, double smallest_span = 0.02);
 Limits joined(Limits a, Limits b);
 

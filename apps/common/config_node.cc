@@ -29,7 +29,7 @@ class YamlConverter {
       node.kind = ConfigNode::Kind::kList;
       for (std::size_t i = 0; i < yaml.size(); ++i) {
         const std::string index = std::to_string(i);
-        node.children.emplace_back(index, convert(yaml[i], joined(path, index)));
+        node.children.push_back({index, convert(yaml[i], joined(path, index))});
       }
     } else {
       node.kind = ConfigNode::Kind::kScalar;
@@ -58,11 +58,11 @@ class YamlConverter {
              fmt::format("duplicate key, first given in line {}", before->place.line)});
         continue;
       }
-      node.children.emplace_back(key, std::move(child));
+      node.children.push_back({key, std::move(child)});
     }
     for (ConfigNode& base : merged) {
       for (auto& [key, child] : base.children) {
-        if (node.find(key) == nullptr) node.children.emplace_back(key, std::move(child));
+        if (node.find(key) == nullptr) node.children.push_back({key, std::move(child)});
       }
     }
   }
@@ -99,8 +99,8 @@ ConfigNode& node_at(ConfigNode& tree, const std::string& key, const ConfigPlace&
       }
       ConfigNode fresh;
       fresh.place = place;
-      node->children.emplace_back(part, std::move(fresh));
-      child = &node->children.back().second;
+      node->children.push_back({part, std::move(fresh)});
+      child = &node->children.back().node;
     }
     node = child;
   }
@@ -180,7 +180,7 @@ void merge_groups(ConfigNode& into, ConfigNode&& from, ConfigIssues& issues) {
                                     before->place.line)});
       continue;
     }
-    into.children.emplace_back(key, std::move(child));
+    into.children.push_back({key, std::move(child)});
   }
 }
 

@@ -1,5 +1,6 @@
-// A configuration as a tree of texts that remember where they came from. YAML files, `--set` overrides
-// and the canonical text of a record all become this tree; config_reader.h checks it against a struct.
+// A configuration as a tree of texts that remember where they came from. YAML files, `--set`
+// overrides and the canonical text of a record all become this tree; config_reader.h checks it
+// against a struct.
 //
 // Nothing here throws: what is wrong with the input is collected as ConfigIssue.
 #pragma once
@@ -30,6 +31,8 @@ using ConfigIssues = std::vector<ConfigIssue>;
 std::string to_string(const ConfigIssue& issue);
 std::string to_string(const ConfigIssues& issues);  // one per line
 
+struct ConfigChild;
+
 struct ConfigNode {
   enum class Kind : std::uint8_t { kMap, kList, kScalar };
 
@@ -38,22 +41,28 @@ struct ConfigNode {
   bool quoted = false;  // kScalar: written in quotes, so not a number
   ConfigPlace place;
   // kMap: in file order. kList: keys are "0", "1", ...
-  std::vector<std::pair<std::string, ConfigNode>> children;
+  std::vector<ConfigChild> children;
 
   const ConfigNode* find(std::string_view key) const;
   ConfigNode* find(std::string_view key);
 };
 
-// Parses a YAML file into `tree`. Anchors, aliases and `<<` merges are understood. An unreadable file,
-// a syntax error, a duplicate key or a top level that is not a map become issues.
+struct ConfigChild {
+  std::string key;
+  ConfigNode node;
+};
+
+// Parses a YAML file into `tree`. Anchors, aliases and `<<` merges are understood. An unreadable
+// file, a syntax error, a duplicate key or a top level that is not a map become issues.
 ConfigNode read_yaml_file(const std::string& path, ConfigIssues& issues);
 ConfigNode read_yaml_text(const std::string& text, const std::string& source, ConfigIssues& issues);
 
 // Moves the top-level groups of `from` into `into`; a group that both have is an issue.
 void merge_groups(ConfigNode& into, ConfigNode&& from, ConfigIssues& issues);
 
-// Applies one `key=value`: dotted key, list items by index, value in YAML (so lists work). The place of
-// what it sets is "--set". A key that does not exist yet is added, and found unknown on reading.
+// Applies one `key=value`: dotted key, list items by index, value in YAML (so lists work). The
+// place of what it sets is "--set". A key that does not exist yet is added, and found unknown on
+// reading.
 void apply_override(ConfigNode& tree, const std::string& assignment, ConfigIssues& issues);
 
 // Reads back canonical text (config_writer.h): lines of `key = value`, empty lines and # comments.

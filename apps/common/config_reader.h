@@ -1,5 +1,5 @@
-// Fills structs that describe themselves (core/base/parameters.h) from a ConfigNode tree and reports
-// everything that is wrong with it: file, line, key, allowed range. Nothing is defaulted.
+// Fills structs that describe themselves (core/base/parameters.h) from a ConfigNode tree and
+// reports everything that is wrong with it: file, line, key, allowed range. Nothing is defaulted.
 //
 //   ConfigIssues issues;
 //   ConfigNode tree = read_yaml_file(path, issues);

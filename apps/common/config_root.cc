@@ -114,9 +114,9 @@ WorldArgument split_world(const std::string& text) {
 std::vector<std::string> take_parameters(ConfigNode& tree) {
   std::vector<std::string> keys;
   const auto found = std::find_if(tree.children.begin(), tree.children.end(),
-                                  [](const auto& child) { return child.first == "parameters"; });
+                                  [](const auto& child) { return child.key == "parameters"; });
   if (found == tree.children.end()) return keys;
-  for (const auto& [index, item] : found->second.children) keys.push_back(item.text);
+  for (const auto& [index, item] : found->node.children) keys.push_back(item.text);
   tree.children.erase(found);
   return keys;
 }
@@ -251,7 +251,7 @@ void read_record_text(const std::string& text, RunRequest& request, Config& conf
   ConfigNode tree = read_canonical_text(text, "record", issues);
   ConfigNode head;
   const auto run = std::find_if(tree.children.begin(), tree.children.end(),
-                                [](const auto& child) { return child.first == "run"; });
+                                [](const auto& child) { return child.key == "run"; });
   if (run != tree.children.end()) {
     head.children.push_back(std::move(*run));
     tree.children.erase(run);

@@ -1,10 +1,12 @@
 // The whole configuration of a run, and how names on the command line become files.
 //
-//   --robot NAME      config/robots/NAME.yaml     groups robot, actuation, estimation, mapping, control,
+//   --robot NAME      config/robots/NAME.yaml     groups robot, actuation, estimation, mapping,
+//   control,
 //                                                 safety, start_pad, sim
-//   --world NAME[:a=1,b=2]  config/worlds/NAME.yaml  group world, and `parameters`: the keys of world
-//                                                 that may follow the colon. A short name (height) means
-//                                                 the key it begins (height_m)
+//   --world NAME[:a=1,b=2]  config/worlds/NAME.yaml  group world, and `parameters`: the keys of
+//   world
+//                                                 that may follow the colon. A short name (height)
+//                                                 means the key it begins (height_m)
 //   --world heightmap:FILE[,scale=S]              the same with world.file = FILE
 //   --mission NAME    config/missions/NAME.yaml   group mission
 //   --set key=value   any key, dotted
@@ -53,7 +55,8 @@ struct RunRequest {
 // build/release/bin), else the present folder's, else the source tree's. Empty: none exists.
 std::filesystem::path config_folder();
 
-// Reads what a run needs: robot, world and mission. The result is complete where `issues` stays empty.
+// Reads what a run needs: robot, world and mission. The result is complete where `issues` stays
+// empty.
 Config load_config(const RunRequest& request, const std::filesystem::path& folder,
                    ConfigIssues& issues);
 

@@ -1,6 +1,6 @@
-// The canonical text of a configuration: one `key = value` per line in the order of describe(), lists
-// by index, numbers in the shortest form that reads back bit for bit. It is what a record stores and
-// what the configuration's hash is taken of.
+// The canonical text of a configuration: one `key = value` per line in the order of describe(),
+// lists by index, numbers in the shortest form that reads back bit for bit. It is what a record
+// stores and what the configuration's hash is taken of.
 #pragma once
 
 #include <array>

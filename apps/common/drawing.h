@@ -1,5 +1,5 @@
-// A picture as a list of shapes, drawn once and stored twice: as SVG text for report.html and as PNG.
-// Units: points of the finished page, origin at the top left, y down.
+// A picture as a list of shapes, drawn once and stored twice: as SVG text for report.html and as
+// PNG. Units: points of the finished page, origin at the top left, y down.
 #pragma once
 
 #include <cstdint>

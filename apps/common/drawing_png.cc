@@ -1,5 +1,5 @@
-// PNG of a Drawing, by OpenCV. Drawn at twice the size and averaged down, so that thin lines and the
-// stroke font look smooth.
+// PNG of a Drawing, by OpenCV. Drawn at twice the size and averaged down, so that thin lines and
+// the stroke font look smooth.
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>

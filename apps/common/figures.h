@@ -20,8 +20,8 @@ struct TerrainFigure {
   double lane_half_width_m = 0;  // 0: no lane
 };
 
-// True ground, perceived map and their difference at one scale, with the traces of body and feet and
-// with the footholds.
+// True ground, perceived map and their difference at one scale, with the traces of body and feet
+// and with the footholds.
 Drawing terrain_figure(const RunLog& log, const TerrainFigure& figure);
 // Speed, tilt and height over time.
 Drawing motion_figure(const RunLog& log);

@@ -1,5 +1,5 @@
-// Heights on a regular grid of W, some of them unknown: the true ground and the perceived map, brought
-// to one raster so that they can be drawn side by side and compared.
+// Heights on a regular grid of W, some of them unknown: the true ground and the perceived map,
+// brought to one raster so that they can be drawn side by side and compared.
 #pragma once
 
 #include <cstddef>

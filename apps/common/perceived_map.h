@@ -21,7 +21,8 @@ struct MapError {
 using TrueGround = std::function<double(double x_m, double y_m)>;
 
 HeightGrid true_grid(const TrueGround& ground, const HeightGrid& raster);
-// The map's heights on the raster of `raster` (nearest cell). In O when there is no truth to align with.
+// The map's heights on the raster of `raster` (nearest cell). In O when there is no truth to align
+// with.
 HeightGrid perceived_grid(const mapping::Mapper& mapper, const Alignment& O_in_W,
                           const HeightGrid& raster);
 

@@ -1,5 +1,5 @@
-// One line about a run under way, on standard error: rewritten in place on a terminal, a new line per
-// second of real time elsewhere. Allocates nothing.
+// One line about a run under way, on standard error: rewritten in place on a terminal, a new line
+// per second of real time elsewhere. Allocates nothing.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// Judges a run. In simulation from the ground truth, which nothing else may look at; on a robot from
-// what the autonomy itself reports.
+// Judges a run. In simulation from the ground truth, which nothing else may look at; on a robot
+// from what the autonomy itself reports.
 #pragma once
 
 #include <cstdint>

@@ -20,13 +20,14 @@ h1 { font-size: 1.5rem; margin: 0; } h2 { font-size: 1.1rem; margin: 2.2rem 0 .6
 .verdict { display: inline-block; padding: .1rem .7rem; border-radius: 1rem; color: white; }
 .good { background: #00855f; } .bad { background: #b8472a; }
 .sub { color: #70777f; margin: .2rem 0 1.2rem; }
-.figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(165px, 1fr)); gap: .7rem; }
+.figures { display: grid; gap: .7rem; margin-bottom: 1.5rem;
+       grid-template-columns: repeat(auto-fill, minmax(165px, 1fr)); }
 .figures div { border: 1px solid #e4e7eb; border-radius: .5rem; padding: .5rem .8rem; }
 .figures b { display: block; font-size: 1.15rem; font-weight: 600; }
 .figures span { color: #70777f; font-size: .85rem; }
 table { border-collapse: collapse; } td, th { padding: .25rem .8rem; text-align: right;
        border-bottom: 1px solid #e4e7eb; } td:first-child, th:first-child { text-align: left; }
-figure { margin: 0; } figcaption { color: #70777f; font-size: .9rem; } svg { width: 100%; }
+figure { margin: 1.6rem 0; } figcaption { color: #70777f; font-size: .9rem; } svg { width: 100%; }
 pre { background: #f6f7f9; padding: 1rem; overflow-x: auto; font-size: .8rem; }
 )";
 
@@ -114,8 +115,8 @@ std::string page(const RunFacts& facts, const std::vector<NamedDrawing>& drawing
       escaped(version_text()));
   html += key_figures(facts);
   for (const NamedDrawing& item : drawings) {
-    html += fmt::format("<h2 id=\"{}\"></h2><figure>{}<figcaption>{}</figcaption></figure>\n",
-                        item.name, to_svg(item.drawing), escaped(item.caption));
+    html += fmt::format("<figure id=\"{}\">{}<figcaption>{}</figcaption></figure>\n", item.name,
+                        to_svg(item.drawing), escaped(item.caption));
   }
   html += "<h2>Tasks</h2>\n" + task_table(facts);
   html += fmt::format(

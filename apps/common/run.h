@@ -21,8 +21,8 @@ struct RunOptions {
   bool quiet = false;           // no progress, no verdict
 };
 
-// The program's exit code: 0 goal, 1 not, 2 wrong use or configuration, 3 fault (of the robot, or of
-// this program: nothing could be written).
+// The program's exit code: 0 goal, 1 not, 2 wrong use or configuration, 3 fault (of the robot, or
+// of this program: nothing could be written).
 int run(const RunOptions& options, Stack& stack);
 
 // Prints the issues to standard error; the exit code for wrong configuration.

@@ -14,8 +14,8 @@ namespace surefoot::apps {
 
 class Stack {
  public:
-  // Resets the autonomy, fills the task table and hands it to the executive. Any status but kOk is the
-  // autonomy's (it refuses the configuration) or the executive's.
+  // Resets the autonomy, fills the task table and hands it to the executive. Any status but kOk is
+  // the autonomy's (it refuses the configuration) or the executive's.
   Status start(const Config& config, const hal::Board& board, runtime::SlowTaskRunner& runner,
                runtime::TickObserver* observer);
 

@@ -17,8 +17,8 @@ struct CampaignOptions {
   std::string record = "failures";  // off, failures, all
 };
 
-// Writes OUT/campaign.json, and OUT/seed-N/ with summary.json, run.log, and record and report of the
-// runs that did not reach their goal. 0: every run was made, however it ended. 2: wrong use or
+// Writes OUT/campaign.json, and OUT/seed-N/ with summary.json, run.log, and record and report of
+// the runs that did not reach their goal. 0: every run was made, however it ended. 2: wrong use or
 // configuration. 3: a file could not be written or no process started.
 int campaign(const CampaignOptions& options);
 

@@ -8,8 +8,8 @@
 
 namespace surefoot::apps {
 
-// 0: identical. 1: a tick differs, or the record is damaged (identical up to there or not). 2: not a
-// readable record.
+// 0: identical. 1: a tick differs, or the record is damaged (identical up to there or not). 2: not
+// a readable record.
 int replay(const std::string& record, const std::filesystem::path& out, Stack& stack);
 
 }  // namespace surefoot::apps

@@ -1,4 +1,5 @@
-// Wrong use and wrong configuration: exit 2 with file, line, key and allowed range, before anything moves.
+// Wrong use and wrong configuration: exit 2 with file, line, key and allowed range, before anything
+// moves.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -1,4 +1,5 @@
-// Drawing code on a synthetic run: what must be visible is there, and nothing breaks on an empty log.
+// Drawing code on a synthetic run: what must be visible is there, and nothing breaks on an empty
+// log.
 #include <gtest/gtest.h>
 
 #include <cmath>
