@@ -20,8 +20,9 @@ function(surefoot_core_library name)
   surefoot_library(${name} ${ARGN})
   get_target_property(type ${name} TYPE)
   if(type STREQUAL "STATIC_LIBRARY")
+    # Stack by function (.su) and, which only g++ can, the calls between functions (.ci): tests/rules.
     target_compile_options(${name} PRIVATE -fno-exceptions -fno-rtti -fno-threadsafe-statics
-                                           -fstack-usage)
+      -fstack-usage $<$<CXX_COMPILER_ID:GNU>:-fcallgraph-info=su>)
     set_property(GLOBAL APPEND PROPERTY SUREFOOT_CORE_ARCHIVES ${name})
   endif()
 endfunction()
