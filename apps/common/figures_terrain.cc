@@ -136,7 +136,11 @@ class TerrainPanels {
       axes.horizontal(figure_.lane_half_width_m, lane);
       axes.horizontal(-figure_.lane_half_width_m, lane);
     }
-    if (figure_.goal_x_m > 0) axes.vertical(figure_.goal_x_m, {palette::kInk, 1.6, true});
+    if (figure_.goal_x_m > 0) {
+      // Ink is lost on the dark low ground, red on the red side of the difference.
+      const Colour ink = colour == height_colour ? palette::kRed : palette::kInk;
+      axes.vertical(figure_.goal_x_m, {ink, 1.6, true});
+    }
     axes.frame();
     colour_bar(drawing_, area, scale, colour, bar_label);
     return axes;
