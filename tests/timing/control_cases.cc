@@ -82,8 +82,8 @@ class Trot final : public WorkCase {
 };
 
 // The tick at which all four legs want to lift and the map has nothing for any of them within the
-// largest radius; all feet stand, so that every leg costs the estimator its full update, and both input
-// lists are full.
+// largest radius; all feet stand, so that every leg costs the estimator its full update, and both
+// input lists are full.
 class AllLift final : public WorkCase {
  public:
   bool prepare(std::size_t round) override {

@@ -85,7 +85,7 @@ class Downward {
     mapping.max_height_above_body_m = 3.0;
     SUREFOOT_ASSERT(
         ok(mapper_.configure(mapping, mapping::sensor_model(config_.robot.depth_camera))));
-    looking_down_ << 0, -1, 0, -1, 0, 0, 0, 0, -1;
+    R_OC_ << 0, -1, 0, -1, 0, 0, 0, 0, -1;
   }
 
   // width x height pixels over `reach_m` to either side at `depth_m` below the camera. Neighbouring
@@ -106,13 +106,13 @@ class Downward {
   }
   Status integrate(double x_O_m, double y_O_m, double z_O_m) {
     mapping::CameraPose X_OC;
-    X_OC.rotation.matrix = looking_down_;
+    X_OC.rotation.matrix = R_OC_;
     X_OC.origin.m = Vector3(x_O_m, y_O_m, z_O_m);
     self_.X_OB.origin.m = X_OC.origin.m;
     return mapper_.integrate(frame_, X_OC, self_, &report_);
   }
-  // Sixteen thin links whose boxes hold all points and whose surfaces hold none: the self filter must
-  // try every one for every point.
+  // Sixteen thin links whose boxes hold all points and whose surfaces hold none: the self filter
+  // must try every one for every point.
   void spread_links() {
     for (std::size_t i = 0; i < mapping::kMaxSelfCapsules; ++i) {
       const double x = i % 2 == 0 ? 20.0 : -20.0;
@@ -130,11 +130,11 @@ class Downward {
   hal::DepthFrame frame_;
   mapping::SelfModel self_;
   mapping::IntegrationReport report_;
-  Matrix3 looking_down_;
+  Matrix3 R_OC_;
 };
 
-// 160 x 128 pixels, each in a cell of its own; within the clearing radius every cell holds a ghost, a
-// surface half way between camera and ground. The frame is the one that clears them all.
+// 160 x 128 pixels, each in a cell of its own; within the clearing radius every cell holds a ghost,
+// a surface half way between camera and ground. The frame is the one that clears them all.
 class Ghosts final : public WorkCase, private Downward {
  public:
   static constexpr double kCamera_m = 2.4;
@@ -166,6 +166,46 @@ class Ghosts final : public WorkCase, private Downward {
   Status status_ = Status::kNotFound;
 };
 
+// The robot's own camera, standing: level ground, and a ghost 5 cm above it in every cell. The
+// frame is the one that clears what it sees.
+class OwnCamera final : public WorkCase, private Downward {
+ public:
+  static constexpr double kGhost_m = 0.05;
+
+  bool prepare(std::size_t round) override {
+    if (round > 0) return false;
+    const robot::DepthCameraSpecification& camera = config_.robot.depth_camera;
+    height_m_ = config_.autonomy.control.body.height_m + camera.mount.position_B_m[2];
+    const math::SinCos down = math::sin_cos(camera.mount.roll_pitch_yaw_rad[1]);
+    R_OC_ << 0, -down.sin, down.cos, -1, 0, 0, 0, -down.cos, -down.sin;
+    mapping::AssumedPad pad;
+    pad.z_O_m = kGhost_m;
+    pad.half_length_m = 5.0;
+    pad.half_width_m = 5.0;
+    pad.sigma_m = config_.autonomy.mapping.min_sigma_m;
+    SUREFOOT_ASSERT(ok(mapper_.assume(pad)));
+    for (int frames = 1; frames < config_.autonomy.mapping.clear_frames; ++frames) {
+      next_frame();
+      SUREFOOT_ASSERT(ok(integrate(0.0, 0.0, height_m_)));
+    }
+    next_frame();
+    return true;
+  }
+  void run() override { status_ = integrate(0.0, 0.0, height_m_); }
+  bool did_the_work() override {
+    return ok(status_) && report_.points > 12000 && report_.cells_cleared > 2000;
+  }
+
+ private:
+  void next_frame() {
+    render_ground(config_.robot.depth_camera, height_m_, frame_);
+    frame_.stamp = frame_.stamp + milliseconds(33);
+  }
+
+  double height_m_ = 0;
+  Status status_ = Status::kNotFound;
+};
+
 // The body jumps by more than the map's side: every cell is forgotten.
 class Jump final : public WorkCase, private Downward {
  public:
@@ -185,8 +225,8 @@ class Jump final : public WorkCase, private Downward {
   Status status_ = Status::kNotFound;
 };
 
-// Every second cell of every second row is a hole with eight neighbours, on a slope that makes their
-// sorting long; once bridged, every cell of the window is steppable with the full margin.
+// Every second cell of every second row is a hole with eight neighbours, on a slope that makes
+// their sorting long; once bridged, every cell of the window is steppable with the full margin.
 class Publish final : public WorkCase, private Downward {
  public:
   bool prepare(std::size_t round) override {
@@ -239,6 +279,8 @@ const WorkEntry kMappingCases[] = {
      make<NominalFrame>},
     {"mapping_worst", "integration, 20480 pixels, ghosts in every cell in view, 16 links",
      make<Ghosts>},
+    {"mapping_own_camera", "integration, the robot's camera, ghosts in every cell in view",
+     make<OwnCamera>},
     {"mapping_jump", "integration, 20480 pixels, the whole map scrolls out", make<Jump>},
     {"mapping_publish", "classification, a quarter of the cells bridged, all steppable",
      make<Publish>},

@@ -1,8 +1,8 @@
 // Runs one piece of a tick with fixed inputs, so that callgrind can count its instructions.
 //
 //   task_work            lists the cases
-//   task_work CASE       runs one and says how long its rounds took, once and with cold caches; exit
-//                        code 1 when it did not do the work that it stands for
+//   task_work CASE       runs one and says how long its rounds took, once and with cold caches;
+//                        exit code 1 when it did not do the work that it stands for
 //
 // Counting is limited to measured_region (valgrind --toggle-collect=measured_region).
 #include <array>
