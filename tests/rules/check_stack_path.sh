@@ -16,13 +16,15 @@ readonly TASKS='surefoot::autonomy::Autonomy::run_control(
 surefoot::autonomy::Autonomy::begin_mapping(
 surefoot::autonomy::MapTask::run(
 surefoot::autonomy::MapTask::publish('
+readonly OTHERS='surefoot::runtime::Executive::run_tick(
+surefoot::autonomy::Autonomy::reset(
+surefoot::runtime::Executive::start('
 readonly OUTSIDE_BYTES=512
-readonly TICK='surefoot::runtime::Executive::run_tick('
 
-# analyse DIR LIMIT TASKS TICK: prints the deepest paths; violations go to standard output as well.
+# analyse DIR LIMIT TASKS OTHERS: prints the deepest paths; violations go to standard output as well.
 analyse() {
   find "$1" -name '*.ci' -print0 | sort -z | xargs -0 -r cat |
-    awk -v limit="$2" -v outside="$OUTSIDE_BYTES" -v tasks="$3" -v tick="$4" '
+    awk -v limit="$2" -v outside="$OUTSIDE_BYTES" -v tasks="$3" -v others="$4" '
     function field(line, key,    at, rest) {
       at = index(line, key ": \"")
       rest = substr(line, at + length(key) + 3)
@@ -111,7 +113,8 @@ analyse() {
       delete state["__indirect_call"]
       name["__indirect_call"] = "(a task or port)"
       calls["__indirect_call"] = deepest_task
-      if (tick != "") report[++count] = entry(tick)
+      extra = split(others, other, "\n")
+      for (i = 1; i <= extra; i++) report[++count] = entry(other[i])
       for (f in defined) depth(f)
       for (i = 1; i <= count; i++) {
         f = report[i]
@@ -166,5 +169,5 @@ else
     echo "no .ci file below $1: nothing was checked"
     exit 1
   }
-  analyse "$1" "$2" "$TASKS" "$TICK"
+  analyse "$1" "$2" "$TASKS" "$OTHERS"
 fi

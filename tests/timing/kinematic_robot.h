@@ -1,5 +1,5 @@
 // A robot without dynamics around the autonomy: joints go where they are told, level attitude, feet
-// on the ground feel their share of the weight. Enough to stand up and to trot, and always the same.
+// on the ground feel their share of the weight. Enough to stand up and to trot, always the same.
 #pragma once
 
 #include <array>
