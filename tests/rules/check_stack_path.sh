@@ -7,7 +7,7 @@
 # A function that several files hold counts with its largest frame and with the calls of all of them.
 # Calls through pointers and virtual calls are allowed in core/runtime alone, where they are the task
 # table and the ports: each counts as the deepest task. What a port needs is its backend's (docs/memory.md).
-# Functions from outside core: memcpy and its kin and the assertion handler of the program count
+# Functions from outside core: memcpy and its kin and the handlers of failed assertions count
 # OUTSIDE_BYTES, any other is an error.
 set -euo pipefail
 export LC_ALL=C
@@ -56,11 +56,14 @@ analyse() {
       for (; f != ""; f = follows[f]) printf "  %6d  %s\n", frame[f], name[f]
     }
     # A complete object constructor (C1) is often another name of the base one (C2), likewise D1, D2.
-    function resolve(f,    other) {
+    function resolve(f,    at, other) {
       if (f in defined) return f
-      other = f
-      if (!sub(/C1E/, "C2E", other)) sub(/D1E/, "D2E", other)
-      return other in defined ? other : f
+      for (at = 1; at < length(f) - 1; at++) {
+        if (substr(f, at, 3) !~ /^[CD]1[EI]$/) continue
+        other = substr(f, 1, at) "2" substr(f, at + 2)
+        if (other in defined) return other
+      }
+      return f
     }
     function entry(text,    f) {
       for (f in defined) if (index(name[f], text)) return f
@@ -91,7 +94,7 @@ analyse() {
       for (f in called) {
         if (resolve(f) in defined || f == "__indirect_call") continue
         frame[f] = outside
-        if (f !~ /^mem(cpy|set|cmp|move)$/ && f !~ /assertion_failed/) {
+        if (f !~ /^mem(cpy|set|cmp|move)$/ && f !~ /assertion_failed|^__assert_fail$/) {
           fail("call to " name[f] " (" f "), whose stack is unknown")
         }
       }
