@@ -52,7 +52,8 @@ void Autonomy::run_control() {
 void Autonomy::receive() {
   bus_.receive({inputs_->can.data(), inputs_->can.size()});
   imu_silent_s_ = inputs_->imu.empty() ? imu_silent_s_ + tick_s_ : 0.0;
-  // Only while nothing acts: a robot that balances on a biased gyro turns until the gyro reads zero.
+  // Only while nothing acts: a robot that balances on a biased gyro turns until the gyro reads
+  // zero.
   const bool still = mission_.phase() == MissionPhase::kEnableDrives;
   imu_refused_ += estimator_.update(inputs_->stamp, {inputs_->imu.data(), inputs_->imu.size()},
                                     bus_.states(), locomotion_.gait_phases(), still);
@@ -79,8 +80,8 @@ const mapping::MapWindow* Autonomy::window() const {
   return config_.mapping.enabled ? &map_.window() : nullptr;
 }
 
-// Stand-up is over: O gets its place on the ground below the trunk, where the feet say that it is, and
-// the start pad enters the map.
+// Stand-up is over: O gets its place on the ground below the trunk, where the feet say that it is,
+// and the start pad enters the map.
 void Autonomy::begin_walking(const estimation::RobotState& state) {
   double below_m = 0;  // of the feet's mean, from the trunk
   for (const estimation::FootState& foot : state.feet) {

@@ -1,8 +1,9 @@
 // The one aggregate: all state of the robot's mind, statically allocated, driven by the executive
-// through two tasks. `control` runs every tick; `mapping` is slow and published kMapLatencyTicks later.
+// through two tasks. `control` runs every tick; `mapping` is slow and published kMapLatencyTicks
+// later.
 //
-// Memory: sizeof(Autonomy), printed per module by `surefoot info`. Nothing allocates. Not copyable in
-// practice: make it a static object of the program.
+// Memory: sizeof(Autonomy), printed per module by `surefoot info`. Nothing allocates. Not copyable
+// in practice: make it a static object of the program.
 #pragma once
 
 #include "core/actuation/joint_bus.h"

@@ -26,8 +26,8 @@ struct SafetyConfig {
   }
 };
 
-// The ground the robot stands on when it is switched on: it cannot see it, so the operator vouches for
-// a level pad around the feet (docs/running.md). Any measurement overrides it.
+// The ground the robot stands on when it is switched on: it cannot see it, so the operator vouches
+// for a level pad around the feet (docs/running.md). Any measurement overrides it.
 struct StartPadConfig {
   double length_m = 0;
   double width_m = 0;

@@ -1,5 +1,6 @@
-// The mapping task: slow, released by a depth frame, working on its own copies, published at a fixed
-// later tick (logical execution time). Control never sees the big map, only the published window.
+// The mapping task: slow, released by a depth frame, working on its own copies, published at a
+// fixed later tick (logical execution time). Control never sees the big map, only the published
+// window.
 #pragma once
 
 #include "core/autonomy/pose_history.h"

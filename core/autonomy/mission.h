@@ -1,5 +1,5 @@
-// What the robot is about to do: from enabling its drives to standing at the goal, or stopping with a
-// reason. A flat state machine on the estimator's state; no knowledge of legs.
+// What the robot is about to do: from enabling its drives to standing at the goal, or stopping with
+// a reason. A flat state machine on the estimator's state; no knowledge of legs.
 #pragma once
 
 #include "core/autonomy/config.h"

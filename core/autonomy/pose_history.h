@@ -1,5 +1,5 @@
-// Where the body and the legs were: a second of estimates, so that a camera frame is placed by the pose
-// of its own exposure and not by that of its arrival.
+// Where the body and the legs were: a second of estimates, so that a camera frame is placed by the
+// pose of its own exposure and not by that of its arrival.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// What the trunk should do: the ground under the feet, the pose above it, and the wrench that gets there.
+// What the trunk should do: the ground under the feet, the pose above it, and the wrench that gets
+// there.
 #pragma once
 
 #include <array>

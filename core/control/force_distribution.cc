@@ -7,8 +7,8 @@
 namespace surefoot::control {
 namespace {
 
-// Penalty of the split. The Hessian's eigenvalues lie between effort + change (about 0.02) and about 10;
-// their geometric mean converges fastest (measured in tests/unit/control).
+// Penalty of the split. The Hessian's eigenvalues lie between effort + change (about 0.02) and
+// about 10; their geometric mean converges fastest (measured in tests/unit/control).
 constexpr double kPenalty = 0.4;
 constexpr double kOverRelaxation = 1.6;
 

@@ -4,10 +4,10 @@
 //   subject to, per foot:  |fx| <= mu fz, |fy| <= mu fz, fz_min <= fz <= fz_max
 //
 // with A the sum of forces and of moments about the trunk (Focchi et al., Autonomous Robots 2017,
-// eq. 3-6). Solved by ADMM with the split on a copy of the forces that is projected exactly onto each
-// foot's truncated pyramid (Boyd et al. 2011, section 5.2): the result is feasible at any iteration,
-// one Cholesky factor per call, a fixed number of iterations, no data-dependent branch on convergence.
-// Feet without contact get zero force.
+// eq. 3-6). Solved by ADMM with the split on a copy of the forces that is projected exactly onto
+// each foot's truncated pyramid (Boyd et al. 2011, section 5.2): the result is feasible at any
+// iteration, one Cholesky factor per call, a fixed number of iterations, no data-dependent branch
+// on convergence. Feet without contact get zero force.
 //
 // Cost: one 12x12 factorisation and kIterations solves. Memory: < 4 kB. Units: N, N m, O axes.
 #pragma once

@@ -174,8 +174,8 @@ void Locomotion::try_swing(std::size_t leg, const estimation::RobotState& state,
   set_path(leg, window);
 }
 
-// Keeps the target up to date with velocity and map until it is locked. A target that can no longer be
-// replaced by a good one stays.
+// Keeps the target up to date with velocity and map until it is locked. A target that can no longer
+// be replaced by a good one stays.
 void Locomotion::follow_foothold(std::size_t leg, const estimation::RobotState& state,
                                  const mapping::MapWindow* window) {
   LegStatus& status = legs_[leg];

@@ -6,9 +6,10 @@
 // Each leg is in one of three modes:
 //   stance  carries load: torque from the force distribution, light joint damping
 //   swing   follows a path to its foothold under joint stiffness
-//   search  should stand but feels no ground: moves straight down until it does or the depth is used up
-// A swing begins when the gait says so and a foothold exists; without one the leg stays in stance for
-// this cycle, the reason is reported and the body slows down (blocked_s()).
+//   search  should stand but feels no ground: moves straight down until it does or the depth is
+//   used up
+// A swing begins when the gait says so and a foothold exists; without one the leg stays in stance
+// for this cycle, the reason is reported and the body slows down (blocked_s()).
 //
 // Cost per tick: one force QP, four leg Jacobians, at most two foothold searches. No allocation.
 #pragma once

@@ -1,5 +1,5 @@
-// From any resting pose on its feet to standing: joint angles are blended to the folded pose, then the
-// feet are pushed down along a straight line until the trunk is at walking height.
+// From any resting pose on its feet to standing: joint angles are blended to the folded pose, then
+// the feet are pushed down along a straight line until the trunk is at walking height.
 #pragma once
 
 #include <array>

@@ -1,8 +1,8 @@
 // The path of a foot through the air, in O: straight up first, then over, then down.
 //
-// Height and way are separate quintic blends of the swing's progress s (zero velocity and acceleration
-// at their ends): the foot rises to the apex during s in [0, 0.4], moves over during [0.15, 0.9] and
-// comes down during [0.5, 1], so that it clears an edge close to either end.
+// Height and way are separate quintic blends of the swing's progress s (zero velocity and
+// acceleration at their ends): the foot rises to the apex during s in [0, 0.4], moves over during
+// [0.15, 0.9] and comes down during [0.5, 1], so that it clears an edge close to either end.
 #pragma once
 
 #include "core/math/linear.h"

@@ -45,7 +45,8 @@ void AttitudeEstimator::gather_start(const Vector3& f) {
   initialised_ = true;
 }
 
-// Rotation, in B, that would bring the predicted "up" onto the measured one; zero while accelerating.
+// Rotation, in B, that would bring the predicted "up" onto the measured one; zero while
+// accelerating.
 Vector3 AttitudeEstimator::gravity_correction(const Vector3& f) const {
   if (!looks_like_rest(f)) return Vector3::Zero();
   const Vector3 up_predicted_B = R_OB_.row(2).transpose();

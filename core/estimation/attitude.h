@@ -1,9 +1,10 @@
 // Attitude from gyro and accelerometer: R_OB, and the gyro bias.
 //
-// The gyro is integrated as rotation vectors; the accelerometer's "up" pulls roll and pitch back with a
-// first-order gain and teaches the gyro bias with an integral gain (explicit complementary filter,
-// Mahony, Hamel, Pflimlin, IEEE TAC 2008, eq. 32). Yaw has no reference: it drifts with the gyro.
-// While the robot lies still the bias of all three axes is learned directly and gravity pulls harder.
+// The gyro is integrated as rotation vectors; the accelerometer's "up" pulls roll and pitch back
+// with a first-order gain and teaches the gyro bias with an integral gain (explicit complementary
+// filter, Mahony, Hamel, Pflimlin, IEEE TAC 2008, eq. 32). Yaw has no reference: it drifts with the
+// gyro. While the robot lies still the bias of all three axes is learned directly and gravity pulls
+// harder.
 #pragma once
 
 #include "core/base/status.h"
@@ -23,8 +24,8 @@ class AttitudeEstimator {
   void reset(const AttitudeConfig& config, const robot::ImuSpecification& imu);
 
   // Takes the next sample. Roll and pitch start from the mean specific force of the first
-  // kStartSamples in a row that look like rest (gravity alone within max_gravity_error_m_s2), yaw = 0.
-  // kInvalid: a value is not finite, or the stamp is not after the last one; nothing changed.
+  // kStartSamples in a row that look like rest (gravity alone within max_gravity_error_m_s2), yaw =
+  // 0. kInvalid: a value is not finite, or the stamp is not after the last one; nothing changed.
   Status update(const hal::ImuSample& sample, bool lying_still);
 
   bool initialised() const { return initialised_; }

@@ -1,15 +1,15 @@
 // Position and velocity of the trunk in O from the accelerometer and the feet that stand.
 //
-// A Kalman filter with the trunk's position and velocity and the four feet as landmarks, after Bloesch
-// et al., RSS 2012 (attitude comes from AttitudeEstimator instead of being part of the state). Nothing
-// assumes flat ground: a foot's height is a state like its other coordinates.
+// A Kalman filter with the trunk's position and velocity and the four feet as landmarks, after
+// Bloesch et al., RSS 2012 (attitude comes from AttitudeEstimator instead of being part of the
+// state). Nothing assumes flat ground: a foot's height is a state like its other coordinates.
 //
 // With isotropic noise the three axes share one 6x6 covariance: state per axis [p, v, foot 0..3].
 // Measurements, taken one scalar at a time:
 //   foot in contact:  foot_i - p = R_OB * fk_i(q)                       (position)
 //                     v = rolling velocity of the foot's centre - R_OB (J qd + omega x fk)
-// A round foot rolls: its centre moves with omega_shank x r n although the contact does not slip; over
-// a stance of the Mini-Cheetah that is about 1 cm, 10 % of a step, so it is modelled (n = up).
+// A round foot rolls: its centre moves with omega_shank x r n although the contact does not slip;
+// over a stance of the Mini-Cheetah that is about 1 cm, 10 % of a step, so it is modelled (n = up).
 // A foot whose velocity disagrees with the prediction by more than slip_gate_sigma is slipping or
 // in the air: it is left out and its landmark starts anew when it agrees again.
 //

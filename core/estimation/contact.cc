@@ -5,8 +5,8 @@
 namespace surefoot::estimation {
 namespace {
 
-// Inertia of the leg about each joint at a half-bent pose, rotors included: abduction turns the whole
-// leg at about hip height, hip turns thigh and shank, knee the shank.
+// Inertia of the leg about each joint at a half-bent pose, rotors included: abduction turns the
+// whole leg at about hip height, hip turns thigh and shank, knee the shank.
 Vector3 diagonal_inertia(const robot::RobotModel& model) {
   const double half_leg = 0.35 * (model.thigh_length_m + model.shank_length_m);
   const double shank = model.shank.inertia_kg_m2[1] +
@@ -36,7 +36,8 @@ void ContactEstimator::reset(const ContactConfig& config, const robot::RobotMode
   residual_Nm_.fill(Vector3::Zero());
 }
 
-// One step of the observer for the joints of a leg: r follows the torque that the motors do not explain.
+// One step of the observer for the joints of a leg: r follows the torque that the motors do not
+// explain.
 Vector3 ContactEstimator::external_torque_Nm(std::size_t leg, const Vector3& qd,
                                              const Vector3& torque) {
   const double gain = config_.observer_gain_1_s;

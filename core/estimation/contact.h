@@ -1,12 +1,12 @@
-// Which feet bear load: ground forces from a momentum observer on the joint torques, judged together
-// with the gait's phase.
+// Which feet bear load: ground forces from a momentum observer on the joint torques, judged
+// together with the gait's phase.
 //
 // A torque command alone proves nothing (a leg pushing into the air reports the torque too). The
-// observer compares the torque with the momentum the leg gains; what is missing went into the ground
-// (generalised-momentum residual, De Luca and Mattone, ICRA 2003), with a constant diagonal inertia per
-// joint, which the reflected rotors dominate. A swinging leg that brakes leaves a residual too, so a
-// touchdown also needs the foot to have stopped sinking, and far above the expected ground it takes a
-// larger force (surprise_force_N): something unmapped was hit.
+// observer compares the torque with the momentum the leg gains; what is missing went into the
+// ground (generalised-momentum residual, De Luca and Mattone, ICRA 2003), with a constant diagonal
+// inertia per joint, which the reflected rotors dominate. A swinging leg that brakes leaves a
+// residual too, so a touchdown also needs the foot to have stopped sinking, and far above the
+// expected ground it takes a larger force (surprise_force_N): something unmapped was hit.
 #pragma once
 
 #include <array>

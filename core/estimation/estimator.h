@@ -1,5 +1,5 @@
-// The state estimator: attitude, contacts, position and velocity, once per tick, from IMU samples and
-// joint states alone.
+// The state estimator: attitude, contacts, position and velocity, once per tick, from IMU samples
+// and joint states alone.
 #pragma once
 
 #include <array>
@@ -42,7 +42,8 @@ class Estimator {
  public:
   void reset(const EstimationConfig& config, const robot::RobotModel& model, double tick_s);
 
-  // imu: samples of this tick, oldest first. Returns how many were refused (not finite, out of order).
+  // imu: samples of this tick, oldest first. Returns how many were refused (not finite, out of
+  // order).
   std::size_t update(TimeNs stamp, std::span<const hal::ImuSample> imu,
                      const std::array<actuation::JointState, robot::kJoints>& joints,
                      const std::array<GaitPhase, robot::kLegs>& gait, bool lying_still);

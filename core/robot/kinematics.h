@@ -1,5 +1,6 @@
 // Kinematics of one three-joint leg. Frames, angles and leg numbering: robot_model.h.
-// Every function is closed form; none allocates; cost is a few dozen flops plus at most three sin_cos.
+// Every function is closed form; none allocates; cost is a few dozen flops plus at most three
+// sin_cos.
 #pragma once
 
 #include <array>
@@ -29,10 +30,10 @@ struct LegPoints {
 };
 LegPoints leg_points_B(const RobotModel& model, std::size_t leg, const LegVector& q_rad);
 
-// Joint angles that put the foot centre at p_B_m, knee bent backwards (knee angle > 0), the foot below
-// the hip in the leg's plane.
-// Out of reach, the target is pulled onto the reachable shell, min_reach .. max_reach from the hip,
-// and the status says kOutOfRange; the angles are valid all the same.
+// Joint angles that put the foot centre at p_B_m, knee bent backwards (knee angle > 0), the foot
+// below the hip in the leg's plane. Out of reach, the target is pulled onto the reachable shell,
+// min_reach .. max_reach from the hip, and the status says kOutOfRange; the angles are valid all
+// the same.
 struct LegSolution {
   LegVector q_rad;
   Status status;

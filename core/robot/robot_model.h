@@ -2,10 +2,10 @@
 // robot's YAML file (config/robots), constant during a run.
 //
 // Frames (docs/frames_and_units.md): B has its origin at the centre of the trunk's four abduction
-// joints, x forward, y left, z up. Legs are numbered FR, FL, HR, HL = 0..3, joints abad, hip, knee =
-// 0..2. All joint angles are zero with the legs straight down. Abduction turns about +x of B, hip and
-// knee about -y (a positive hip angle swings the foot forward).
-// Link data is given for a LEFT leg; a right leg mirrors y.
+// joints, x forward, y left, z up. Legs are numbered FR, FL, HR, HL = 0..3, joints abad, hip, knee
+// = 0..2. All joint angles are zero with the legs straight down. Abduction turns about +x of B, hip
+// and knee about -y (a positive hip angle swings the foot forward). Link data is given for a LEFT
+// leg; a right leg mirrors y.
 #pragma once
 
 #include <array>

@@ -56,8 +56,8 @@ class InlineRunner : public SlowTaskRunner {
   explicit InlineRunner(hal::Clock* stopwatch) : stopwatch_(stopwatch) {}
 
  private:
-  // Defined here and not in a source file: core is compiled without run-time type information, and a
-  // class whose table lives there could not be derived from in code that has it.
+  // Defined here and not in a source file: core is compiled without run-time type information, and
+  // a class whose table lives there could not be derived from in code that has it.
   void do_start(std::size_t index, const SlowWork& work) final {
     SUREFOOT_ASSERT(index < times_.size());
     const TimeNs begin = stopwatch_ != nullptr ? stopwatch_->now() : TimeNs{};

@@ -1,5 +1,5 @@
-// What a HAL backend hands to the executive: the robot's devices, real, simulated or recorded. Devices
-// a robot does not have are null.
+// What a HAL backend hands to the executive: the robot's devices, real, simulated or recorded.
+// Devices a robot does not have are null.
 #pragma once
 
 #include "hal/api/can_port.h"

@@ -14,13 +14,19 @@ namespace surefoot::hal {
 
 inline constexpr std::size_t kMaxCanBuses = 4;
 
-// One classic or FD frame. Bytes from `size` on are zero, so that equal frames compare and hash equal.
+// One classic or FD frame. Bytes from `size` on are zero, so that equal frames compare and hash
+// equal.
 struct CanFrame {
-  enum Flag : std::uint8_t { kExtendedId = 1, kFlexibleDataRate = 2, kBitRateSwitch = 4, kErrorFrame = 8 };
+  enum Flag : std::uint8_t {
+    kExtendedId = 1,
+    kFlexibleDataRate = 2,
+    kBitRateSwitch = 4,
+    kErrorFrame = 8
+  };
 
-  TimeNs stamp;           // receive time on Clock; zero on transmit
-  std::uint32_t id = 0;   // 11- or 29-bit identifier without flag bits
-  std::uint8_t bus = 0;   // index into the robot file's bus list
+  TimeNs stamp;          // receive time on Clock; zero on transmit
+  std::uint32_t id = 0;  // 11- or 29-bit identifier without flag bits
+  std::uint8_t bus = 0;  // index into the robot file's bus list
   std::uint8_t flags = 0;
   std::uint8_t size = 0;  // 0..64 bytes
   std::array<std::uint8_t, 64> data{};
@@ -51,8 +57,8 @@ class CanPort {
   // Moves up to out.size() received frames of all buses, oldest first, and returns how many. Never
   // blocks. Frames of one bus keep their order; equal stamps are ordered by bus index.
   std::size_t receive(std::span<CanFrame> out) { return do_receive(out); }
-  // kExhausted: the transmit queue is full, frame dropped and counted. kUnavailable: bus off or index
-  // without a bus, dropped and counted. kInvalid: size or id out of range, nothing sent.
+  // kExhausted: the transmit queue is full, frame dropped and counted. kUnavailable: bus off or
+  // index without a bus, dropped and counted. kInvalid: size or id out of range, nothing sent.
   Status send(const CanFrame& frame) { return do_send(frame); }
   CanCounters counters() const { return do_counters(); }
 

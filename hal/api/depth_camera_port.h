@@ -14,7 +14,8 @@ namespace surefoot::hal {
 inline constexpr std::size_t kMaxDepthWidth_px = 640;
 inline constexpr std::size_t kMaxDepthHeight_px = 480;
 
-// Pinhole model of a rectified image; u to the right, v down; the centre of the first pixel is (0, 0).
+// Pinhole model of a rectified image; u to the right, v down; the centre of the first pixel is (0,
+// 0).
 struct PinholeIntrinsics {
   std::uint16_t width_px = 0;
   std::uint16_t height_px = 0;
@@ -61,8 +62,8 @@ struct DepthFrame {
 
 class DepthCameraPort {
  public:
-  // Copies the oldest waiting frame into out. kUnavailable: none waiting or no device, out unchanged.
-  // Cost: one copy of the image. Never blocks.
+  // Copies the oldest waiting frame into out. kUnavailable: none waiting or no device, out
+  // unchanged. Cost: one copy of the image. Never blocks.
   Status receive(DepthFrame& out) { return do_receive(out); }
   SensorCounters counters() const { return do_counters(); }
 

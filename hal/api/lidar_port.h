@@ -16,8 +16,8 @@ inline constexpr std::size_t kMaxLidarBeams = 1081;
 // One sweep in the scanner's frame L: x forward, y left, beams counter-clockwise in the x-y plane.
 // Beam i points at first_angle_rad + i * angle_step_rad. Range 0 means no return.
 struct LidarScan {
-  TimeNs stamp;            // time of the first beam
-  TimeNs beam_interval;    // between consecutive beams
+  TimeNs stamp;          // time of the first beam
+  TimeNs beam_interval;  // between consecutive beams
   std::uint32_t sequence = 0;
   std::uint16_t beam_count = 0;
   float first_angle_rad = 0;

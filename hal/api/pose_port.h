@@ -15,7 +15,7 @@ namespace surefoot::hal {
 struct PoseSample {
   TimeNs stamp;
   std::uint32_t sequence = 0;
-  std::uint8_t confidence = 0;                 // 0 = lost, 1 low, 2 medium, 3 high
+  std::uint8_t confidence = 0;  // 0 = lost, 1 low, 2 medium, 3 high
   std::array<double, 3> p_ST_m{};
   std::array<double, 4> q_ST_wxyz{1, 0, 0, 0};  // unit quaternion, w first
 

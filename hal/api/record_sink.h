@@ -28,8 +28,8 @@ struct RecordCounters {
 class RecordSink {
  public:
   // Stores one message; the bytes are copied before the call returns. Allocates nothing.
-  // kExhausted: buffers full, message dropped and counted. kUnavailable: storage failed (disk full),
-  // dropped and counted.
+  // kExhausted: buffers full, message dropped and counted. kUnavailable: storage failed (disk
+  // full), dropped and counted.
   Status write(RecordChannel channel, TimeNs stamp, std::span<const std::uint8_t> bytes) {
     return do_write(channel, stamp, bytes);
   }

@@ -19,7 +19,7 @@ struct StereoFrame {
   std::uint32_t sequence = 0;
   std::uint16_t width_px = 0;
   std::uint16_t height_px = 0;
-  std::array<std::uint8_t, kMaxStereoWidth_px * kMaxStereoHeight_px> left{};   // row-major grey
+  std::array<std::uint8_t, kMaxStereoWidth_px * kMaxStereoHeight_px> left{};  // row-major grey
   std::array<std::uint8_t, kMaxStereoWidth_px * kMaxStereoHeight_px> right{};
 
   template <class Self, class Visitor>

@@ -25,8 +25,8 @@
 namespace surefoot::hal {
 namespace {
 
-// The interposed functions have no object to belong to, so this is the one piece of state that hangs
-// on the thread. Plain data: reading it allocates nothing.
+// The interposed functions have no object to belong to, so this is the one piece of state that
+// hangs on the thread. Plain data: reading it allocates nothing.
 struct ThreadHeapState {
   bool counting;
   bool trap;

@@ -67,7 +67,8 @@ class Encoder {
   Bytes& out_;
 };
 
-// Takes a byte range apart. After the first read beyond the end, ok() is false and reads give zeros.
+// Takes a byte range apart. After the first read beyond the end, ok() is false and reads give
+// zeros.
 class Decoder {
  public:
   explicit Decoder(ByteView bytes) : bytes_(bytes) {}
@@ -101,8 +102,8 @@ struct Message {
   ByteView data;
 };
 
-// Reads the message record at `position` and moves position behind it. false: no whole message record
-// is there; position is unchanged.
+// Reads the message record at `position` and moves position behind it. false: no whole message
+// record is there; position is unchanged.
 bool read_message(ByteView records, std::size_t& position, Message& out);
 
 // The head of a chunk record's content, and where its compressed bytes lie within the content.

@@ -11,10 +11,10 @@ namespace surefoot::hal::mcap {
 // Magic, Header, and a Schema and Channel record for each channel of the layout.
 void append_head(const RecordLayout& layout, Bytes& out);
 
-// DataEnd, summary (schemas, channels, chunk index, statistics, offsets), footer and magic of a file
-// whose data section ends at `data_end`. The chunks are found by walking through the open file, so
-// that nothing has to be kept in memory while recording, however long the run.
-// false: the file could not be read back; out then holds DataEnd and a footer without a summary.
+// DataEnd, summary (schemas, channels, chunk index, statistics, offsets), footer and magic of a
+// file whose data section ends at `data_end`. The chunks are found by walking through the open
+// file, so that nothing has to be kept in memory while recording, however long the run. false: the
+// file could not be read back; out then holds DataEnd and a footer without a summary.
 bool append_tail(int file, const RecordLayout& layout, std::uint64_t data_end,
                  std::uint32_t data_crc, Bytes& out);
 

@@ -18,7 +18,8 @@ namespace {
 using mcap::ByteView;
 using mcap::Opcode;
 
-// A chunk that claims more than this when unpacked is damaged: the writer's limit is a quarter of it.
+// A chunk that claims more than this when unpacked is damaged: the writer's limit is a quarter of
+// it.
 constexpr std::uint64_t kMaxUncompressed = std::uint64_t{256} << 20;
 constexpr std::size_t kScanBlock = std::size_t{1} << 20;
 
@@ -92,7 +93,8 @@ Status RecordReader::Impl::report(std::uint64_t at, const std::string& reason) {
   return Status::kCorrupt;
 }
 
-// The record at `at` cannot be trusted, not even its length: go on at the next chunk, if there is one.
+// The record at `at` cannot be trusted, not even its length: go on at the next chunk, if there is
+// one.
 Status RecordReader::Impl::report_and_resynchronise(std::uint64_t at, const std::string& reason) {
   std::uint64_t found = 0;
   if (find_chunk(at + 1, found)) {

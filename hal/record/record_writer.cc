@@ -60,8 +60,8 @@ void reserve_touched(mcap::Bytes& bytes, std::size_t size) {
 
 }  // namespace
 
-// Chunk buffers go round in a ring: the caller's thread fills one, the writer thread stores the next.
-// Two semaphores count the free and the full ones, so that neither side ever takes a lock.
+// Chunk buffers go round in a ring: the caller's thread fills one, the writer thread stores the
+// next. Two semaphores count the free and the full ones, so that neither side ever takes a lock.
 struct RecordWriter::Impl {
   Impl() {
     ::sem_init(&free_buffers, 0, 0);

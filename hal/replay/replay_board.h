@@ -41,8 +41,8 @@ class ReplayBoard {
   // RecordChannel::kConfiguration.
   const std::string& configuration() const;
   // All ports a tick's inputs can hold. The clock begins one `period` (of a tick, from the
-  // configuration) before the first recorded tick. record and stopwatch are null: the caller may add
-  // its own.
+  // configuration) before the first recorded tick. record and stopwatch are null: the caller may
+  // add its own.
   Board board(TimeNs period);
   // TickInputs::slow_task_overruns of the tick being replayed, for runtime::RecordedRunner.
   const std::uint32_t& overruns() const;

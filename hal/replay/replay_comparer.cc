@@ -70,7 +70,8 @@ class ListingVisitor : public FieldVisitor<ListingVisitor> {
     lengths_.pop_back();
     last_name_.clear();
   }
-  // A member visited several times in a row (the bytes of a CAN frame) gets an index from the second.
+  // A member visited several times in a row (the bytes of a CAN frame) gets an index from the
+  // second.
   std::string scalar_path(const std::string& name) {
     if (name.empty()) return path_;
     repeats_ = name == last_name_ ? repeats_ + 1 : 0;

@@ -36,8 +36,8 @@ std::string type_name() {
   }
 }
 
-// Collects one line for each member. Sets every scalar it meets to one and every list to one item, so
-// that optional and counted members show themselves once.
+// Collects one line for each member. Sets every scalar it meets to one and every list to one item,
+// so that optional and counted members show themselves once.
 class SchemaVisitor : public FieldVisitor<SchemaVisitor> {
  public:
   template <class T>

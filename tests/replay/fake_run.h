@@ -1,5 +1,5 @@
-// A made-up robot and autonomy for record and replay: inputs of every kind from a seed, a control task
-// that mixes them into its outputs, a slow task on the depth frames with injected overruns.
+// A made-up robot and autonomy for record and replay: inputs of every kind from a seed, a control
+// task that mixes them into its outputs, a slow task on the depth frames with injected overruns.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // A count of ticks or seconds is not a time.
-// expect: could not convert|no matching function|cannot convert|no viable conversion|no known conversion
+// expect: could not convert|no matching function|cannot convert|no viable conversion|no known
+// conversion
 #include "core/base/time.h"
 
 void wait_until(surefoot::TimeNs deadline);

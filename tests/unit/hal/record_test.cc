@@ -231,7 +231,8 @@ TEST(Record, TheFileFollowsTheMcapSpecification) {
   EXPECT_EQ(footer + 29 + 8, file.size());
 }
 
-// Every prefix of a file: what precedes the cut is delivered, the cut is reported, nothing is invented.
+// Every prefix of a file: what precedes the cut is delivered, the cut is reported, nothing is
+// invented.
 TEST(Record, CutAtEveryByte) {
   const ScratchFolder folder;
   write_record(folder.file("a.mcap"), 45, 20);
@@ -257,8 +258,8 @@ TEST(Record, CutAtEveryByte) {
   EXPECT_EQ(delivered_before, 0u);
 }
 
-// One flipped byte anywhere: reported, everything before it delivered as it was, everything delivered
-// after it was written.
+// One flipped byte anywhere: reported, everything before it delivered as it was, everything
+// delivered after it was written.
 TEST(Record, OneDamagedByteAnywhere) {
   const ScratchFolder folder;
   write_record(folder.file("a.mcap"), 45, 20);
@@ -345,8 +346,8 @@ TEST(Record, AFullDiskAtTheStartIsReported) {
   EXPECT_EQ(writer.counters().dropped, 1u);
 }
 
-// A file size limit stands in for a disk that fills up during the run. In a child process, since the
-// limit holds for all of a process.
+// A file size limit stands in for a disk that fills up during the run. In a child process, since
+// the limit holds for all of a process.
 TEST(Record, ADiskThatFillsUpLosesOnlyWhatCameAfter) {
   const ScratchFolder folder;
   const std::string path = folder.file("a.mcap");
