@@ -1,5 +1,6 @@
 #include "core/autonomy/autonomy.h"
 
+#include "core/mapping/foothold.h"
 #include "core/math/elementary.h"
 
 namespace surefoot::autonomy {
@@ -16,6 +17,8 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   actuation::ActuationParameters actuation = config.actuation;
   actuation.silent_after_ticks =
       static_cast<std::uint32_t>(config.safety.drive_silence_s / tick_s_) + 1;
+  const double search_limit_m = mapping::kMaxSearchRadius_cells * config.mapping.cell_size_m;
+  if (config.control.foothold.search_radius_m > search_limit_m) return Status::kOutOfRange;
   const Status wired = bus_.configure(model, actuation);
   if (!ok(wired)) return wired;
   const Status mapped = map_.reset(config.mapping, model);

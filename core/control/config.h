@@ -38,7 +38,7 @@ struct FootholdConfig {
     visit.real("max_offset_m", self.max_offset_m, {0.0, 0.6}, "from the hip's point, each axis");
     visit.real("lateral_offset_m", self.lateral_offset_m, {-0.2, 0.2},
                "outwards of the hip's point");
-    visit.real("search_radius_m", self.search_radius_m, {0.0, 0.4}, "how far a foothold may move");
+    visit.real("search_radius_m", self.search_radius_m, {0.0, 0.3}, "how far a foothold may move");
     visit.real("margin_weight_m", self.margin_weight_m, {0.0, 0.1},
                "detour that one more cell of distance from an edge is worth");
     visit.real("lock_progress", self.lock_progress, {0.0, 1.0}, "target fixed after this share");
