@@ -263,6 +263,9 @@ struct Capture {
   double seconds;
 };
 
+// For the test's name in lists: the bytes of the struct would be different in every process.
+void PrintTo(const Capture& capture, std::ostream* out) { *out << capture.name; }
+
 class CandumpCaptures : public testing::TestWithParam<Capture> {};
 
 TEST_P(CandumpCaptures, AreReadWholeAndWrittenBackByteForByte) {
