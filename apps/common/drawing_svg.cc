@@ -5,27 +5,13 @@
 
 #include "apps/common/drawing.h"
 
+#include "apps/common/markup.h"
+
 namespace surefoot::apps {
 namespace {
 
 std::string hex(Colour colour) {
   return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else {
-      out.push_back(c);
-    }
-  }
-  return out;
 }
 
 std::string stroke_attributes(const Stroke& stroke) {

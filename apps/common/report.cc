@@ -7,6 +7,7 @@
 #include <fstream>
 #include <utility>
 
+#include "apps/common/markup.h"
 #include "apps/common/version.h"
 
 namespace surefoot::apps {
@@ -30,22 +31,6 @@ table { border-collapse: collapse; } td, th { padding: .25rem .8rem; text-align:
 figure { margin: 1.6rem 0; } figcaption { color: #70777f; font-size: .9rem; } svg { width: 100%; }
 pre { background: #f6f7f9; padding: 1rem; overflow-x: auto; font-size: .8rem; }
 )";
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&') {
-      out += "&amp;";
-    } else if (c == '<') {
-      out += "&lt;";
-    } else if (c == '>') {
-      out += "&gt;";
-    } else {
-      out.push_back(c);
-    }
-  }
-  return out;
-}
 
 bool write_file(const std::filesystem::path& path, const char* data, std::size_t size,
                 std::string& problem) {
