@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "apps/common/drawing.h"
-
 #include "apps/common/markup.h"
 
 namespace surefoot::apps {
