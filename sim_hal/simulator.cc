@@ -9,6 +9,7 @@
 #include "sim_hal/robot/articulation.h"
 #include "sim_hal/robot/contacts.h"
 #include "sim_hal/robot/ode_runtime.h"
+#include "sim_hal/robot/pushes.h"
 #include "sim_hal/robot/sim_can_port.h"
 #include "sim_hal/sensors/sim_depth_camera_port.h"
 #include "sim_hal/sensors/sim_imu_port.h"
@@ -93,6 +94,7 @@ struct Simulator::Implementation final : hal::Clock {
         index(terrain),
         robot(ode.id(), robot_model, configuration.start, step.seconds()),
         contacts(ode.id(), robot, terrain, index, configuration.physics),
+        pushes(configuration.scenario.push, seed),
         can(robot_model, configuration.can, configuration.faults, seed),
         imu(robot_model.imu, configuration.imu, configuration.faults, seed),
         camera(robot_model.depth_camera, configuration.depth, configuration.faults, index, seed) {
@@ -118,6 +120,7 @@ struct Simulator::Implementation final : hal::Clock {
   TerrainIndex index;
   Articulation robot;
   Contacts contacts;
+  Pushes pushes;
   SimCanPort can;
   SimImuPort imu;
   SimDepthCameraPort camera;
@@ -182,10 +185,12 @@ void Simulator::Implementation::track_slip() {
 void Simulator::Implementation::advance() {
   torques_Nm = can.torques_Nm(now);
   robot.apply(torques_Nm);
-  if (trunk_force_N.squaredNorm() > 0) {
+  const Matrix3 R_WB = robot.trunk_rotation();
+  const Vector3 left_W = Vector3(-R_WB(1, 0), R_WB(0, 0), 0).normalized();
+  const Vector3 force = trunk_force_N + pushes.force_W_N(now, left_W);
+  if (force.squaredNorm() > 0) {
     const Vector3 p = robot.trunk_position_m();
-    dBodyAddForceAtPos(robot.body(0), trunk_force_N.x(), trunk_force_N.y(), trunk_force_N.z(),
-                       p.x(), p.y(), p.z());
+    dBodyAddForceAtPos(robot.body(0), force.x(), force.y(), force.z(), p.x(), p.y(), p.z());
   }
   contacts.collide();
   dWorldStep(ode.id(), step.seconds());

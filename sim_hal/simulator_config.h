@@ -6,6 +6,7 @@
 
 #include "core/base/parameters.h"
 #include "core/robot/robot_model.h"
+#include "sim_hal/scenario.h"
 
 namespace surefoot::sim {
 
@@ -120,6 +121,7 @@ struct SimulatorConfig {
   CanConfig can;
   FaultConfig faults;
   StartPose start;
+  ScenarioConfig scenario;  // described apart: the mission's file gives it
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {

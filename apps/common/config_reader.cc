@@ -59,6 +59,17 @@ bool ConfigReader::check_list(const ConfigNode& node, const std::string& key, st
   return complete;
 }
 
+// A list of any length up to the capacity. In the canonical text, which has a line per value, an
+// empty one is the scalar [].
+bool ConfigReader::check_open_list(const ConfigNode& node, const std::string& key,
+                                   std::size_t capacity, std::size_t& length) {
+  length = node.children.size();
+  if (node.kind == ConfigNode::Kind::kScalar && node.text == kEmptyList) return true;
+  if (length <= capacity) return check_list(node, key, length);
+  report(node.place, key, fmt::format("too long: {} items, allowed: {}", length, capacity));
+  return false;
+}
+
 void ConfigReader::read_real(const ConfigNode& node, const std::string& key, Range range,
                              double& value) {
   if (!check_scalar(node, key, "a real number")) return;

@@ -18,6 +18,7 @@
 
 #include "apps/common/config_node.h"
 #include "apps/common/config_values.h"
+#include "core/base/fixed_vector.h"
 #include "core/base/parameters.h"
 
 namespace surefoot::apps {
@@ -72,6 +73,18 @@ class ConfigReader {
       read_group(*node->find(index), path(key) + "." + index, values[i]);
     }
   }
+  // As many groups as the file lists, up to the capacity; none is `[]`.
+  template <class Struct, std::size_t N>
+  void list(const char* key, FixedVector<Struct, N>& values) {
+    const ConfigNode* node = find(key, "a list of groups");
+    std::size_t length = 0;
+    if (node == nullptr || !check_open_list(*node, path(key), N, length)) return;
+    static_cast<void>(values.resize(length));  // at most N
+    for (std::size_t i = 0; i < length; ++i) {
+      const std::string index = std::to_string(i);
+      read_group(*node->find(index), path(key) + "." + index, values[i]);
+    }
+  }
 
  private:
   ConfigReader(const ConfigNode& node, std::string prefix, ConfigIssues& issues)
@@ -94,6 +107,8 @@ class ConfigReader {
   void report(const ConfigPlace& place, const std::string& key, const std::string& message);
   bool check_scalar(const ConfigNode& node, const std::string& key, const char* expected);
   bool check_list(const ConfigNode& node, const std::string& key, std::size_t length);
+  bool check_open_list(const ConfigNode& node, const std::string& key, std::size_t capacity,
+                       std::size_t& length);
   void read_real(const ConfigNode& node, const std::string& key, Range range, double& value);
   bool read_integer(const ConfigNode& node, const std::string& key, Range range,
                     std::int64_t& value);

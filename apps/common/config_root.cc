@@ -168,7 +168,7 @@ void add_world(const std::string& text, const fs::path& folder, ConfigNode& tree
 // Which option should have brought a top-level group.
 const char* option_of(const std::string& group) {
   if (group == "world") return "--world";
-  if (group == "mission") return "--mission";
+  if (group == "mission" || group == "scenario") return "--mission";
   return "--robot";
 }
 

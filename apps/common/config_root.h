@@ -8,7 +8,7 @@
 //                                                 that may follow the colon. A short name (height)
 //                                                 means the key it begins (height_m)
 //   --world heightmap:FILE[,scale=S]              the same with world.file = FILE
-//   --mission NAME    config/missions/NAME.yaml   group mission
+//   --mission NAME    config/missions/NAME.yaml   groups mission, scenario
 //   --set key=value   any key, dotted
 // Instead of a name each takes a path to a .yaml file.
 #pragma once
@@ -38,6 +38,7 @@ struct Config {
     autonomy::AutonomyConfig::describe(self.autonomy, visit);
     visit.group("world", self.world);
     visit.group("sim", self.sim);
+    visit.group("scenario", self.sim.scenario);
   }
 };
 

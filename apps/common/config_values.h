@@ -16,6 +16,8 @@ std::optional<double> parse_real(std::string_view text);
 std::optional<std::int64_t> parse_integer(std::string_view text);
 std::optional<bool> parse_boolean(std::string_view text);  // true or false
 
+inline constexpr const char* kEmptyList = "[]";  // as a scalar of the canonical text
+
 std::string number_text(double value);  // the shortest text that reads back as the same bits
 std::string range_text(Range range);    // "allowed: 0 to 0.3"
 

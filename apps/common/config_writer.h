@@ -11,6 +11,7 @@
 
 #include "apps/common/config_node.h"
 #include "apps/common/config_values.h"
+#include "core/base/fixed_vector.h"
 #include "core/base/hash.h"
 #include "core/base/parameters.h"
 
@@ -56,6 +57,14 @@ class ConfigWriter {
   template <class Struct, std::size_t N>
   void groups(const char* key, const std::array<Struct, N>& values) {
     for (std::size_t i = 0; i < N; ++i) {
+      group((std::string(key) + "." + std::to_string(i)).c_str(), values[i]);
+    }
+  }
+
+  template <class Struct, std::size_t N>
+  void list(const char* key, const FixedVector<Struct, N>& values) {
+    if (values.empty()) line(key, kEmptyList);
+    for (std::size_t i = 0; i < values.size(); ++i) {
       group((std::string(key) + "." + std::to_string(i)).c_str(), values[i]);
     }
   }

@@ -111,8 +111,7 @@ void Autonomy::act(const estimation::RobotState& state) {
     case MissionPhase::kWalk:
     case MissionPhase::kArrived:
       if (!walking_ready_) begin_walking(state);
-      commands_ =
-          locomotion_.update(state, window(), mission_.command(), mission_.stepping(), tick_s_);
+      commands_ = locomotion_.update(state, window(), mission_.command(), mission_.gait(), tick_s_);
       break;
     case MissionPhase::kStopped: commands_ = bus_.damping_commands(); break;
   }

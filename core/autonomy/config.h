@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/actuation/joint_bus.h"
+#include "core/base/fixed_vector.h"
 #include "core/base/parameters.h"
 #include "core/control/config.h"
 #include "core/estimation/config.h"
@@ -39,11 +40,32 @@ struct StartPadConfig {
   }
 };
 
+// One line of a scripted mission: a velocity command held for a while.
+struct ScriptStep {
+  double duration_s = 0;
+  control::GaitKind gait = control::GaitKind::kTrot;
+  double forward_m_s = 0;
+  double left_m_s = 0;
+  double yaw_rate_rad_s = 0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("duration_s", self.duration_s, {0.0, 3600.0}, "how long");
+    visit.choice("gait", self.gait, control::kGaitNames, "how the legs move");
+    visit.real("forward_m_s", self.forward_m_s, {-4.0, 4.0}, "commanded");
+    visit.real("left_m_s", self.left_m_s, {-2.0, 2.0}, "commanded");
+    visit.real("yaw_rate_rad_s", self.yaw_rate_rad_s, {-5.0, 5.0}, "commanded");
+  }
+};
+
+inline constexpr std::size_t kMaxScriptSteps = 24;
+
 struct MissionConfig {
-  enum class Kind : std::uint8_t { kStand = 0, kCross };
-  static constexpr const char* kKindNames[] = {"stand", "cross"};
+  enum class Kind : std::uint8_t { kStand = 0, kCross, kScript };
+  static constexpr const char* kKindNames[] = {"stand", "cross", "script"};
 
   Kind kind = Kind::kStand;
+  control::GaitKind gait = control::GaitKind::kTrot;  // cross: how the legs move
   double goal_x_m = 0;          // ahead of the start, along the start's heading
   double goal_tolerance_m = 0;  // by the robot's own estimate
   double speed_m_s = 0;
@@ -55,10 +77,12 @@ struct MissionConfig {
   double settle_s = 0;   // standing still before the first step
   double stand_s = 0;    // mission stand: how long
   double timeout_s = 0;  // of the whole mission
+  FixedVector<ScriptStep, kMaxScriptSteps> script;  // mission script: one after the other
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.choice("kind", self.kind, kKindNames, "what to do");
+    visit.choice("gait", self.gait, control::kGaitNames, "cross: how the legs move");
     visit.real("goal_x_m", self.goal_x_m, {0.0, 1000.0}, "ahead of the start");
     visit.real("goal_tolerance_m", self.goal_tolerance_m, {0.001, 10.0}, "by own estimate");
     visit.real("speed_m_s", self.speed_m_s, {0.0, 4.0}, "commanded");
@@ -70,6 +94,7 @@ struct MissionConfig {
     visit.real("settle_s", self.settle_s, {0.1, 60.0}, "standing still before the first step");
     visit.real("stand_s", self.stand_s, {0.0, 3600.0}, "mission stand: how long");
     visit.real("timeout_s", self.timeout_s, {1.0, 36000.0}, "of the whole mission");
+    visit.list("script", self.script);
   }
 };
 

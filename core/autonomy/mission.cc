@@ -51,31 +51,56 @@ void Mission::update(const estimation::RobotState& state, const MissionFacts& fa
     case MissionPhase::kSettle: {
       const bool stand = config_.kind == MissionConfig::Kind::kStand;
       if (stand && phase_s_ >= config_.stand_s) return enter(MissionPhase::kArrived);
-      if (!stand && phase_s_ >= config_.settle_s) return enter(MissionPhase::kWalk);
-      break;
+      if (stand || phase_s_ < config_.settle_s) break;
+      gait_ = config_.gait;
+      return enter(MissionPhase::kWalk);
     }
     case MissionPhase::kWalk:
-      steer(state);
-      if (state.p_OB_m[0] >= config_.goal_x_m - config_.goal_tolerance_m) {
-        command_ = control::VelocityCommand{};
-        return enter(MissionPhase::kArrived);
-      }
-      break;
+      if (config_.kind == MissionConfig::Kind::kScript) return follow_script(state, step_s);
+      return cross(state);
     case MissionPhase::kArrived:
     case MissionPhase::kStopped: break;
   }
 }
 
+void Mission::arrive() {
+  command_ = control::VelocityCommand{};
+  enter(MissionPhase::kArrived);
+}
+
 // Along the line y = 0 of O towards the goal.
-void Mission::steer(const estimation::RobotState& state) {
+void Mission::cross(const estimation::RobotState& state) {
+  if (state.p_OB_m[0] >= config_.goal_x_m - config_.goal_tolerance_m) return arrive();
   const double sideways = math::clamp(-config_.line_gain_1_s * state.p_OB_m[1],
                                       -config_.max_lateral_m_s, config_.max_lateral_m_s);
   // The command is in the body's heading: turn the wanted velocity of the line into it.
   const math::SinCos yaw = math::sin_cos(state.yaw_rad);
   command_.forward_m_s = yaw.cos * config_.speed_m_s + yaw.sin * sideways;
   command_.left_m_s = yaw.cos * sideways - yaw.sin * config_.speed_m_s;
-  command_.yaw_rate_rad_s = math::clamp(-config_.heading_gain_1_s * state.yaw_rad,
-                                        -config_.max_yaw_rate_rad_s, config_.max_yaw_rate_rad_s);
+  command_.yaw_rate_rad_s = turn_towards(state, 0.0);
+}
+
+double Mission::turn_towards(const estimation::RobotState& state, double heading_rad) const {
+  const double error = math::wrap_angle(heading_rad - state.yaw_rad);
+  return math::clamp(config_.heading_gain_1_s * error, -config_.max_yaw_rate_rad_s,
+                     config_.max_yaw_rate_rad_s);
+}
+
+// The command of the line in hand; the heading is what the commanded turns add up to.
+void Mission::follow_script(const estimation::RobotState& state, double step_s) {
+  while (script_step_ < config_.script.size() &&
+         script_s_ >= config_.script[script_step_].duration_s) {
+    script_s_ -= config_.script[script_step_].duration_s;
+    ++script_step_;
+  }
+  if (script_step_ >= config_.script.size()) return arrive();
+  const ScriptStep& line = config_.script[script_step_];
+  script_s_ += step_s;
+  gait_ = line.gait;
+  heading_rad_ = math::wrap_angle(heading_rad_ + line.yaw_rate_rad_s * step_s);
+  command_.forward_m_s = line.forward_m_s;
+  command_.left_m_s = line.left_m_s;
+  command_.yaw_rate_rad_s = line.yaw_rate_rad_s + turn_towards(state, heading_rad_);
 }
 
 }  // namespace surefoot::autonomy

@@ -26,20 +26,30 @@ class Mission {
   bool phase_changed() const { return phase_s_ == 0.0; }  // first tick of a phase
   StopReason stop_reason() const { return stop_reason_; }
   const control::VelocityCommand& command() const { return command_; }
-  bool stepping() const { return phase_ == MissionPhase::kWalk; }
+  // kStand outside of phase kWalk.
+  control::GaitKind gait() const {
+    return phase_ == MissionPhase::kWalk ? gait_ : control::GaitKind::kStand;
+  }
   bool finished() const;
 
  private:
   void enter(MissionPhase phase);
   void stop(StopReason reason);
-  void steer(const estimation::RobotState& state);
+  void arrive();
+  void cross(const estimation::RobotState& state);
+  void follow_script(const estimation::RobotState& state, double step_s);
+  double turn_towards(const estimation::RobotState& state, double heading_rad) const;
 
   MissionConfig config_;
   MissionPhase phase_ = MissionPhase::kEnableDrives;
   StopReason stop_reason_ = StopReason::kNone;
+  control::GaitKind gait_ = control::GaitKind::kStand;
   control::VelocityCommand command_;
   double elapsed_s_ = 0;
   double phase_s_ = 0;
+  std::size_t script_step_ = 0;  // mission script: the line in hand
+  double script_s_ = 0;          // time spent in it
+  double heading_rad_ = 0;       // mission script: what the commanded turns add up to
 };
 
 }  // namespace surefoot::autonomy

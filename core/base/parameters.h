@@ -16,6 +16,7 @@
 //   choice(key, Enum&, std::span<const char* const> names, doc)   // enumerators count from 0
 //   group(key, Struct&)
 //   groups(key, std::array<Struct, N>&)
+//   list(key, FixedVector<Struct, N>&)   // of any length up to N
 // The key carries the unit. There are no defaults: a key that is missing in the file is an error,
 // so that what runs is what the files say.
 #pragma once

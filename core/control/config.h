@@ -24,6 +24,23 @@ struct GaitConfig {
   }
 };
 
+// The gaits a robot's file describes. kStand: no leg is lifted.
+enum class GaitKind : std::uint8_t { kStand = 0, kWalk, kTrot, kTrotRun, kPace, kBound, kPronk };
+inline constexpr const char* kGaitNames[] = {"stand", "walk",  "trot", "trot_run",
+                                             "pace",  "bound", "pronk"};
+inline constexpr std::size_t kGaits = 7;
+
+struct GaitLibrary {
+  std::array<GaitConfig, kGaits> gaits;  // by GaitKind; the first stays unused
+
+  const GaitConfig& of(GaitKind kind) const { return gaits[static_cast<std::size_t>(kind)]; }
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    for (std::size_t i = 1; i < kGaits; ++i) visit.group(kGaitNames[i], self.gaits[i]);
+  }
+};
+
 struct FootholdConfig {
   double velocity_feedback_s = 0;  // k of the Raibert rule
   double max_offset_m = 0;         // from the hip's point, each axis
@@ -131,7 +148,7 @@ struct StandUpConfig {
 };
 
 struct ControlConfig {
-  GaitConfig gait;
+  GaitLibrary gaits;
   FootholdConfig foothold;
   SwingConfig swing;
   BodyConfig body;
@@ -140,7 +157,7 @@ struct ControlConfig {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.group("gait", self.gait);
+    visit.group("gaits", self.gaits);
     visit.group("foothold", self.foothold);
     visit.group("swing", self.swing);
     visit.group("body", self.body);

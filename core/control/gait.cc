@@ -4,13 +4,17 @@ namespace surefoot::control {
 
 void Gait::reset(const GaitConfig& config) {
   config_ = config;
+  next_ = config;
   phase_ = 0;
   evaluate();
 }
 
 void Gait::advance(double step_s) {
   phase_ += step_s / config_.period_s;
-  if (phase_ >= 1.0) phase_ -= 1.0;
+  if (phase_ >= 1.0) {
+    phase_ -= 1.0;
+    config_ = next_;
+  }
   evaluate();
 }
 

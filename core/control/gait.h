@@ -16,15 +16,19 @@ struct LegPhase {
 
 class Gait {
  public:
-  void reset(const GaitConfig& config);
   // Starts the cycle at the beginning of everyone's stance overlap. Cost: O(legs).
+  void reset(const GaitConfig& config);
+  // Goes over to another gait where the cycle ends.
+  void change_to(const GaitConfig& config) { next_ = config; }
   void advance(double step_s);
+  const GaitConfig& config() const { return config_; }
   const std::array<LegPhase, robot::kLegs>& legs() const { return legs_; }
 
  private:
   void evaluate();
 
   GaitConfig config_;
+  GaitConfig next_;
   double phase_ = 0;  // [0, 1)
   std::array<LegPhase, robot::kLegs> legs_;
 };

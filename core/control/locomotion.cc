@@ -21,14 +21,13 @@ void Locomotion::reset(const ControlConfig& config, const robot::RobotModel& mod
   *this = Locomotion{};
   config_ = config;
   model_ = model;
-  gait_.reset(config.gait);
+  gait_.reset(config.gaits.of(GaitKind::kTrot));
   footholds_.reset(config.foothold, model);
   forces_.reset(config.force);
   tracker_.reset(config.body, model);
 }
 
 void Locomotion::start(const estimation::RobotState& state) {
-  gait_.reset(config_.gait);
   gait_running_ = false;
   command_ = VelocityCommand{};
   legs_.fill(LegStatus{});
@@ -59,8 +58,9 @@ bool Locomotion::all_in_stance() const {
 
 const actuation::JointCommands& Locomotion::update(const estimation::RobotState& state,
                                                    const mapping::MapWindow* window,
-                                                   const VelocityCommand& command, bool stepping,
+                                                   const VelocityCommand& command, GaitKind gait,
                                                    double step_s) {
+  const bool stepping = gait != GaitKind::kStand;
   // Without footholds the body must not run ahead of its feet.
   constexpr double kBlockedSlowdown_s = 0.5;
   const double share =
@@ -71,7 +71,7 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
   command_.yaw_rate_rad_s =
       ramp(command_.yaw_rate_rad_s, command.yaw_rate_rad_s * share, 4.0 * change);
 
-  advance_gait(stepping, step_s);
+  advance_gait(gait, step_s);
   tracker_.update(state, command_, step_s);
   reference_ = tracker_.reference();
   bool blocked = false;
@@ -87,8 +87,7 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
     if (status.mode == LegMode::kStance) {
       command_stance(leg, state);
     } else if (status.mode == LegMode::kSwing) {
-      command_foot(leg, state,
-                   evaluate(status.path, status.swing_progress, config_.gait.swing_s()));
+      command_foot(leg, state, evaluate(status.path, status.swing_progress, status.swing_s));
     } else {
       SwingPoint point;
       point.position_O_m = status.anchor_O_m - Vector3(0.0, 0.0, status.searched_m);
@@ -100,11 +99,13 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
 }
 
 // The clock stands still while all legs stand and no step is wanted, and starts from the beginning.
-void Locomotion::advance_gait(bool stepping, double step_s) {
+void Locomotion::advance_gait(GaitKind gait, double step_s) {
+  const bool stepping = gait != GaitKind::kStand;
   if (stepping && !gait_running_) {
-    gait_.reset(config_.gait);
+    gait_.reset(config_.gaits.of(gait));
     gait_running_ = true;
   }
+  if (stepping) gait_.change_to(config_.gaits.of(gait));
   if (!stepping && all_in_stance()) gait_running_ = false;
   if (gait_running_) gait_.advance(step_s);
 }
@@ -138,7 +139,7 @@ void Locomotion::advance_leg(std::size_t leg, const estimation::RobotState& stat
         status.landed_early = !should_stand;
       } else {
         follow_foothold(leg, state, window);
-        status.swing_progress = phase.progress;
+        status.swing_progress = 1.0 - phase.remaining_s / status.swing_s;
       }
       break;
     case LegMode::kSearch:
@@ -162,7 +163,7 @@ void Locomotion::try_swing(std::size_t leg, const estimation::RobotState& state,
   if (status.landed_early) return;
   const Vector3 nominal =
       footholds_.nominal_O_m(leg, state, command_, gait_.legs()[leg].remaining_s,
-                             config_.gait.stance_s(), reference_.ground_z_m);
+                             gait_.config().stance_s(), reference_.ground_z_m);
   status.foothold = footholds_.choose(nominal, window);
   if (status.foothold.reason == FootholdReason::kNone) {
     status.skipped_swing = true;
@@ -170,6 +171,7 @@ void Locomotion::try_swing(std::size_t leg, const estimation::RobotState& state,
   }
   status.mode = LegMode::kSwing;
   status.swing_progress = 0;
+  status.swing_s = gait_.legs()[leg].remaining_s;
   status.path.lift_off_O_m = state.feet[leg].p_O_m;
   set_path(leg, window);
 }
@@ -182,7 +184,7 @@ void Locomotion::follow_foothold(std::size_t leg, const estimation::RobotState& 
   if (status.swing_progress > config_.foothold.lock_progress) return;
   const Vector3 nominal =
       footholds_.nominal_O_m(leg, state, command_, gait_.legs()[leg].remaining_s,
-                             config_.gait.stance_s(), reference_.ground_z_m);
+                             gait_.config().stance_s(), reference_.ground_z_m);
   const Foothold next = footholds_.choose(nominal, window);
   if (next.reason == FootholdReason::kNone) return;
   status.foothold = next;

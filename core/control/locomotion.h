@@ -34,6 +34,7 @@ enum class LegMode : std::uint8_t { kStance = 0, kSwing, kSearch };
 struct LegStatus {
   LegMode mode = LegMode::kStance;
   double swing_progress = 0;
+  double swing_s = 0;  // duration of the swing under way
   SwingPath path;
   Foothold foothold;
   double height_above_landing_m = 0;     // of the foot, while it swings
@@ -51,10 +52,11 @@ class Locomotion {
   // All legs in stance at the present pose: call once when stand-up is done.
   void start(const estimation::RobotState& state);
 
-  // stepping: false holds the robot in four-legged stance (swings under way are finished).
+  // gait: kStand holds the robot in four-legged stance (swings under way are finished); a change
+  // of gait takes place where the present cycle ends.
   const actuation::JointCommands& update(const estimation::RobotState& state,
                                          const mapping::MapWindow* window,
-                                         const VelocityCommand& command, bool stepping,
+                                         const VelocityCommand& command, GaitKind gait,
                                          double step_s);
 
   const std::array<LegStatus, robot::kLegs>& legs() const { return legs_; }
@@ -66,7 +68,7 @@ class Locomotion {
   const BodyReference& reference() const { return reference_; }
 
  private:
-  void advance_gait(bool stepping, double step_s);
+  void advance_gait(GaitKind gait, double step_s);
   void advance_leg(std::size_t leg, const estimation::RobotState& state,
                    const mapping::MapWindow* window, bool stepping, double step_s);
   void try_swing(std::size_t leg, const estimation::RobotState& state,

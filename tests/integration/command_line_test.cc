@@ -94,9 +94,9 @@ TEST(CommandLine, WrongConfigurationNamesFileLineKeyAndRange) {
 }
 
 TEST(CommandLine, SetIsCheckedAndNamed) {
-  const ProgramResult result = run_program(kRun + " --set control.gait.period_s=70");
+  const ProgramResult result = run_program(kRun + " --set control.gaits.trot.period_s=70");
   EXPECT_EQ(result.code, 2);
-  EXPECT_NE(result.error.find("--set: control.gait.period_s: 70 is out of range"),
+  EXPECT_NE(result.error.find("--set: control.gaits.trot.period_s: 70 is out of range"),
             std::string::npos)
       << result.error;
 }

@@ -105,7 +105,7 @@ class AllLift final : public WorkCase {
  private:
   static apps::Config config() {
     return load(quick({"start_pad.length_m=0.0", "start_pad.width_m=0.0",
-                       "control.gait.offset=[0.0, 0.0, 0.0, 0.0]",
+                       "control.gaits.trot.offset=[0.0, 0.0, 0.0, 0.0]",
                        "control.foothold.search_radius_m=0.30"}));
   }
   static std::size_t refused(const KinematicRobot& robot) {

@@ -163,8 +163,8 @@ class Retarget final : public WorkCase {
  public:
   bool prepare(std::size_t round) override {
     if (round > 0) return false;
-    const apps::Config config =
-        load({"control.gait.offset=[0.0, 0.0, 0.0, 0.0]", "control.foothold.search_radius_m=0.30"});
+    const apps::Config config = load({"control.gaits.trot.offset=[0.0, 0.0, 0.0, 0.0]",
+                                      "control.foothold.search_radius_m=0.30"});
     place(config);
     fill(window_, config.autonomy.mapping.cell_size_m, mapping::FootholdClass::kSteppable);
     locomotion_.reset(config.autonomy.control, config.robot);
@@ -198,7 +198,9 @@ class Retarget final : public WorkCase {
       foot.in_contact = true;
     }
   }
-  void update() { locomotion_.update(state_, &window_, {0.5, 0.0, 0.0}, true, kStep_s); }
+  void update() {
+    locomotion_.update(state_, &window_, {0.5, 0.0, 0.0}, control::GaitKind::kTrot, kStep_s);
+  }
   bool all_swing() const {
     const auto& legs = locomotion_.legs();
     return std::all_of(legs.begin(), legs.end(), [](const control::LegStatus& leg) {

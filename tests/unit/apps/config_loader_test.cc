@@ -8,6 +8,7 @@
 #include "apps/common/config_node.h"
 #include "apps/common/config_reader.h"
 #include "apps/common/config_writer.h"
+#include "core/base/fixed_vector.h"
 
 namespace surefoot::apps {
 namespace {
@@ -42,6 +43,15 @@ struct Machine {
     visit.reals("size_m", self.size_m, {-1.0, 1.0}, "x y z");
     visit.group("main", self.main);
     visit.groups("motors", self.motors);
+  }
+};
+
+struct Fleet {
+  FixedVector<Motor, 2> motors;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.list("motors", self.motors);
   }
 };
 
@@ -215,7 +225,7 @@ TEST(ConfigLoader, CanonicalTextRoundTrips) {
   Machine machine = good_machine();
   machine.main.torque_Nm = 0.1 + 0.2;  // needs all 17 digits
   machine.size_m[0] = -0.0;
-  machine.file = "odd \"name\"\\\n";
+  machine.file = "odd \"name\"\\n";
   const std::string text = ConfigWriter::write(machine);
   ConfigIssues issues;
   Machine again;
@@ -243,6 +253,32 @@ TEST(ConfigLoader, TheSameGroupInTwoFilesIsADuplicate) {
   merge_groups(tree, read_yaml_text("b: {x: 1}\na: {x: 2}\n", "two.yaml", issues), issues);
   EXPECT_EQ(to_string(issues), "two.yaml:2: a: duplicate key, first given in one.yaml:1\n");
   EXPECT_NE(tree.find("b"), nullptr);
+}
+
+// Lists of any length come back from the canonical text as they went in, the empty one too.
+TEST(ConfigLoader, ListsOfAnyLengthUpToTheirCapacity) {
+  const auto read = [](const std::string& text, ConfigIssues& issues) {
+    Fleet fleet;
+    ConfigReader::read(read_yaml_text(text, "fleet.yaml", issues), fleet, issues);
+    return fleet;
+  };
+  const std::string motor = "  - {torque_Nm: 2.5, bus: 1}\n";
+  for (std::size_t count = 0; count <= 2; ++count) {
+    std::string text = count == 0 ? "motors: []\n" : "motors:\n";
+    for (std::size_t i = 0; i < count; ++i) text += motor;
+    ConfigIssues issues;
+    const Fleet fleet = read(text, issues);
+    ASSERT_EQ(to_string(issues), "");
+    ASSERT_EQ(fleet.motors.size(), count);
+    Fleet again;
+    ConfigReader::read(read_canonical_text(ConfigWriter::write(fleet), "record", issues), again,
+                       issues);
+    EXPECT_EQ(to_string(issues), "");
+    EXPECT_EQ(ConfigWriter::write(again), ConfigWriter::write(fleet));
+  }
+  ConfigIssues issues;
+  read("motors:\n" + motor + motor + motor, issues);
+  EXPECT_EQ(to_string(issues), "fleet.yaml:1: motors: too long: 3 items, allowed: 2\n");
 }
 
 }  // namespace

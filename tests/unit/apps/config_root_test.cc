@@ -90,7 +90,7 @@ TEST(ConfigRoot, UnknownNamesListTheKnownOnes) {
   request.mission = "fly";
   const std::string issues = issues_of(request);
   EXPECT_NE(issues.find("--mission: 'fly' is unknown"), std::string::npos) << issues;
-  EXPECT_NE(issues.find(" cross stand"), std::string::npos) << issues;
+  EXPECT_NE(issues.find(" cross push "), std::string::npos) << issues;
   EXPECT_EQ(std::count(issues.begin(), issues.end(), '\n'), 1) << issues;
 }
 
@@ -141,7 +141,7 @@ TEST(ConfigRoot, RecordTextRestoresRequestAndConfiguration) {
 TEST(ConfigRoot, HashSeesEveryChange) {
   RunRequest request = cross();
   const std::uint64_t before = config_hash(loaded(request));
-  request.sets = {"control.gait.period_s=0.401"};
+  request.sets = {"control.gaits.trot.period_s=0.401"};
   EXPECT_NE(config_hash(loaded(request)), before);
   request.sets.clear();
   request.seed = 2;  // a seed is not configuration

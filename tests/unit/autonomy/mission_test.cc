@@ -12,6 +12,7 @@ constexpr double kStep_s = 0.002;
 MissionConfig cross() {
   MissionConfig config;
   config.kind = MissionConfig::Kind::kCross;
+  config.gait = control::GaitKind::kTrot;
   config.goal_x_m = 3.0;
   config.goal_tolerance_m = 0.05;
   config.speed_m_s = 0.5;
@@ -50,9 +51,9 @@ TEST(Mission, GoesFromRestToWalkingInOrder) {
   EXPECT_EQ(mission.phase(), MissionPhase::kEnableDrives);
   EXPECT_NEAR(ticks_until(mission, MissionPhase::kStandUp, state, healthy(), 1000), 50, 1);
   EXPECT_NEAR(ticks_until(mission, MissionPhase::kSettle, state, healthy(), 1000), 1, 1);
-  EXPECT_FALSE(mission.stepping());
+  EXPECT_EQ(mission.gait(), control::GaitKind::kStand);
   EXPECT_NEAR(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 100, 1);
-  EXPECT_TRUE(mission.stepping());
+  EXPECT_EQ(mission.gait(), control::GaitKind::kTrot);
 }
 
 TEST(Mission, ArrivesByTheRobotsOwnEstimateAndHoldsBeforeItIsFinished) {
@@ -98,7 +99,7 @@ TEST(Mission, AFaultStopsItOnceAndKeepsItsReason) {
   mission.update(state, facts, kStep_s);
   EXPECT_EQ(mission.phase(), MissionPhase::kStopped);
   EXPECT_TRUE(mission.finished());
-  EXPECT_FALSE(mission.stepping());
+  EXPECT_EQ(mission.gait(), control::GaitKind::kStand);
   facts.fault = StopReason::kTilt;
   mission.update(state, facts, kStep_s);
   EXPECT_EQ(mission.stop_reason(), StopReason::kDriveSilent);
@@ -114,6 +115,31 @@ TEST(Mission, SilentDrivesAndTimeEndItWithTheirReasons) {
   slow.reset(cross());
   EXPECT_GE(ticks_until(slow, MissionPhase::kStopped, state, healthy(), 20000), 9000);
   EXPECT_EQ(slow.stop_reason(), StopReason::kMissionTimeout);
+}
+
+TEST(Mission, FollowsItsScriptLineByLineAndThenArrives) {
+  MissionConfig config = cross();
+  config.kind = MissionConfig::Kind::kScript;
+  const ScriptStep run{0.1, control::GaitKind::kTrotRun, 1.5, 0.0, 0.0};
+  const ScriptStep turn{0.2, control::GaitKind::kTrot, 0.0, 0.2, 0.4};
+  ASSERT_TRUE(ok(config.script.push_back(run)));
+  ASSERT_TRUE(ok(config.script.push_back(turn)));
+  Mission mission;
+  mission.reset(config);
+  estimation::RobotState state;
+  ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 0);
+  for (int tick = 0; tick < 50; ++tick) {
+    mission.update(state, healthy(), kStep_s);
+    EXPECT_EQ(mission.gait(), control::GaitKind::kTrotRun);
+    EXPECT_EQ(mission.command().forward_m_s, 1.5);
+  }
+  mission.update(state, healthy(), kStep_s);
+  EXPECT_EQ(mission.gait(), control::GaitKind::kTrot);
+  EXPECT_EQ(mission.command().left_m_s, 0.2);
+  // Who lags behind the commanded turn is turned faster.
+  EXPECT_GT(mission.command().yaw_rate_rad_s, 0.4);
+  EXPECT_EQ(ticks_until(mission, MissionPhase::kArrived, state, healthy(), 1000), 100);
+  EXPECT_EQ(mission.gait(), control::GaitKind::kStand);
 }
 
 }  // namespace

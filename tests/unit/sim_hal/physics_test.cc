@@ -164,6 +164,28 @@ TEST(Physics, KickingInFreeFallKeepsTheAngularMomentum) {
   dWorldDestroy(world);
 }
 
+// A blow of a scenario in mid-air, where nothing else pushes sideways: the robot takes over exactly
+// its impulse, to one side or the other as the seed draws.
+TEST(Pushes, GiveTheirImpulseOnceAndToEitherSide) {
+  int left = 0;
+  constexpr int kSeeds = 12;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    SimulatorConfig config;
+    config.start.drop_height_m = 2.0;
+    config.scenario.push = {1, 3.0, 0.05, 0.05, 0.0, 0.1};
+    Simulator simulator(mini_cheetah(), WorldSpec{}, config, seed);
+    ASSERT_EQ(simulator.board().clock->wait_until(milliseconds(300)), Status::kOk);
+    const Truth truth = simulator.truth();
+    ASSERT_FALSE(truth.trunk_contact);
+    // Limp legs swing against the trunk: its speed times the mass is near the impulse only.
+    const double impulse_N_s = mini_cheetah().total_mass_kg() * truth.v_WB_m_s[1];
+    EXPECT_NEAR(std::fabs(impulse_N_s), 3.0, 0.9);
+    if (impulse_N_s > 0) ++left;
+  }
+  EXPECT_GT(left, 0);
+  EXPECT_LT(left, kSeeds);
+}
+
 class Slip : public testing::TestWithParam<int> {};
 
 // Pushes a crouching robot with a horizontal force: below the friction cone it stays, above it
