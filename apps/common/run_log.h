@@ -13,6 +13,8 @@
 
 namespace surefoot::apps {
 
+inline constexpr std::uint64_t kTicksPerSample = 4;  // 8 ms
+
 struct RunSample {
   TimeNs stamp;
   autonomy::Telemetry telemetry;

@@ -12,8 +12,6 @@
 
 namespace surefoot::apps {
 
-inline constexpr std::uint64_t kTicksPerSample = 4;  // 8 ms
-
 struct LoopResult {
   double wall_time_s = 0;
   bool interrupted = false;     // SIGINT or SIGTERM

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
+
+#include "core/autonomy/autonomy.h"
 
 namespace surefoot::apps {
 namespace {
@@ -78,6 +81,54 @@ std::uint64_t count_touches(const RunLog& log, std::size_t begin, std::size_t en
   return touches;
 }
 
+// Forward, left and turning speed of a sample, axes of the heading.
+std::array<double, 3> heading_speeds(const RunLog& log, const RunSample& sample) {
+  const bool truth = log.has_truth();
+  const Position& v = truth ? sample.truth.v_WB_m_s : sample.telemetry.v_OB_m_s;
+  const double yaw = yaw_of(truth ? sample.truth.q_WB_wxyz : sample.telemetry.q_OB_wxyz);
+  const Position& rate =
+      truth ? sample.truth.angular_velocity_B_rad_s : sample.telemetry.angular_velocity_B_rad_s;
+  return {v[0] * std::cos(yaw) + v[1] * std::sin(yaw), v[1] * std::cos(yaw) - v[0] * std::sin(yaw),
+          rate[2]};
+}
+
+// The largest, over all windows of `window` values, of the smallest of their means over `mean`
+// values in a row.
+double sustained(const std::vector<double>& values, std::size_t mean, std::size_t window) {
+  if (values.size() < window || mean == 0) return 0;
+  std::vector<double> means;
+  double sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    sum += values[i];
+    if (i >= mean) sum -= values[i - mean];
+    if (i + 1 >= mean) means.push_back(sum / static_cast<double>(mean));
+  }
+  const auto count = static_cast<std::ptrdiff_t>(window - mean + 1);
+  double best = 0;
+  for (auto first = means.begin(); means.end() - first >= count; ++first) {
+    best = std::max(best, *std::min_element(first, first + count));
+  }
+  return best;
+}
+
+SustainedSpeeds sustained_speeds(const RunLog& log, std::size_t begin, std::size_t end) {
+  constexpr double kSamples_1_s = 1.0 / (kTicksPerSample * autonomy::kTickPeriod.seconds());
+  constexpr auto kMean = static_cast<std::size_t>(0.5 * kSamples_1_s);
+  constexpr auto kWindow = static_cast<std::size_t>(5.0 * kSamples_1_s);
+  std::array<std::vector<double>, 5> columns;  // forward, left, right, turning left, right
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto [forward, left, turn] = heading_speeds(log, log.samples()[i]);
+    columns[0].push_back(forward);
+    columns[1].push_back(left);
+    columns[2].push_back(-left);
+    columns[3].push_back(turn);
+    columns[4].push_back(-turn);
+  }
+  std::array<double, 5> best{};
+  for (std::size_t i = 0; i < best.size(); ++i) best[i] = sustained(columns[i], kMean, kWindow);
+  return {best[0], std::max(best[1], best[2]), std::max(best[3], best[4])};
+}
+
 EstimateErrors estimate_errors(const RunLog& log, std::size_t begin, std::size_t end,
                                double path_length_m) {
   EstimateErrors errors;
@@ -117,6 +168,7 @@ RunMeasures measure(const RunLog& log, double goal_x_m) {
     const double made = measures.start_to_goal_m - plane_distance(last, goal);
     if (measures.walk_s > 0) measures.mean_speed_m_s = std::max(0.0, made / measures.walk_s);
   }
+  measures.sustained = sustained_speeds(log, begin, end);
   if (!log.has_truth()) return measures;
   measures.foot_slips = count_slips(log, begin, end);
   measures.collisions = count_touches(log, begin, end);

@@ -15,6 +15,14 @@ struct EstimateErrors {
   double rms_error_m = 0;    // over the walk
 };
 
+// What the body keeps up: within the best 5 s of the walk, the lowest mean over half a second. True
+// motion, in the axes of the body's heading; without truth the estimate's.
+struct SustainedSpeeds {
+  double forward_m_s = 0;
+  double lateral_m_s = 0;  // to either side
+  double yaw_rate_rad_s = 0;
+};
+
 struct RunMeasures {
   double start_to_goal_m = 0;  // true place at the first step to the goal; 0 without a goal
   double walk_s = 0;           // from the first sample of walking to the last
@@ -22,6 +30,7 @@ struct RunMeasures {
   double mean_speed_m_s = 0;   // way made towards the goal over walk_s
   std::uint64_t foot_slips = 0;  // contacts in which a sole slipped more than 20 mm
   std::uint64_t collisions = 0;  // times that trunk, thigh or shank came to touch the ground
+  SustainedSpeeds sustained;     // zero for walks shorter than 5 s
   EstimateErrors estimate;       // zero without truth
 };
 

@@ -54,6 +54,9 @@ Json summary_json(const RunFacts& facts) {
   json["path_length_m"] = m.path_length_m;
   json["walk_time_s"] = m.walk_s;
   json["mean_speed_m_s"] = m.mean_speed_m_s;
+  json["sustained"] = {{"forward_m_s", m.sustained.forward_m_s},
+                       {"lateral_m_s", m.sustained.lateral_m_s},
+                       {"yaw_rate_rad_s", m.sustained.yaw_rate_rad_s}};
   json["collisions"] = m.collisions;
   json["falls"] = facts.falls;
   json["foot_slips"] = m.foot_slips;

@@ -214,5 +214,30 @@ TEST(CampaignResult, CountsOutcomes) {
   EXPECT_NEAR(json["wilson95"][0].get<double>(), wilson95(2, 3)[0], 1e-12);
 }
 
+// Six seconds at 2 m/s with a stumble: what is kept up is what the stumble leaves.
+TEST(Measures, SustainedSpeedIsTheSlowestHalfSecondOfTheBestFive) {
+  RunLog log(2000, true);
+  const auto walk = [&](double seconds, double forward_m_s) {
+    for (int i = 0; i < static_cast<int>(seconds / 0.008); ++i) {
+      sim::Truth truth = body_at(0);
+      truth.q_WB_wxyz = {std::cos(0.5), 0, 0, std::sin(0.5)};  // heading 1 rad
+      truth.v_WB_m_s = {forward_m_s * std::cos(1.0), forward_m_s * std::sin(1.0), 0};
+      truth.angular_velocity_B_rad_s = {0, 0, -0.5};
+      log.add(at(0.008 * static_cast<double>(log.samples().size())), in_phase(MissionPhase::kWalk),
+              &truth);
+    }
+  };
+  walk(4.0, 2.0);
+  EXPECT_EQ(measure(log, -1).sustained.forward_m_s, 0.0);  // too short
+  walk(0.5, 1.0);
+  walk(4.5, 1.8);
+  const SustainedSpeeds speeds = measure(log, -1).sustained;
+  EXPECT_NEAR(speeds.forward_m_s, 1.0, 0.02);
+  EXPECT_NEAR(speeds.lateral_m_s, 0.0, 1e-9);
+  EXPECT_NEAR(speeds.yaw_rate_rad_s, 0.5, 1e-9);
+  walk(1.0, 1.8);
+  EXPECT_NEAR(measure(log, -1).sustained.forward_m_s, 1.8, 0.02);
+}
+
 }  // namespace
 }  // namespace surefoot::apps
