@@ -34,5 +34,6 @@ extern const WorkEntry kControlCases[];
 extern const WorkEntry kModuleCases[];
 extern const WorkEntry kMappingCases[];
 extern const WorkEntry kExecutiveCases[];
+extern const WorkEntry kDynamicsCases[];
 
 }  // namespace surefoot::timing

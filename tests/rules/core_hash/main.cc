@@ -16,6 +16,7 @@ constexpr Workload kWorkloads[] = {
     {"linear_algebra", surefoot::tests::hash_linear_algebra},
     {"geometry", surefoot::tests::hash_geometry},
     {"kinematics", surefoot::tests::hash_kinematics},
+    {"dynamics", surefoot::tests::hash_dynamics},
     {"actuation", surefoot::tests::hash_actuation},
     {"attitude", surefoot::tests::hash_attitude},
     {"mapping", surefoot::tests::hash_mapping},

@@ -4,6 +4,8 @@
 #include "core/actuation/motor_protocol.h"
 #include "core/base/random.h"
 #include "core/estimation/attitude.h"
+#include "core/geometry/rotations.h"
+#include "core/robot/dynamics.h"
 #include "core/robot/kinematics.h"
 #include "tests/rules/core_hash/workloads.h"
 
@@ -39,6 +41,49 @@ void hash_kinematics(Fnv64& hash) {
     const robot::LegSolution solution = robot::solve_leg(model, leg, target);
     mix(hash, solution.q_rad);
     hash.byte(static_cast<std::uint8_t>(solution.status));
+  }
+}
+
+void hash_dynamics(Fnv64& hash) {
+  robot::RobotModel model = mini_cheetah();
+  model.trunk = {3.3, {0.01, 0, -0.01}, {0.011, 0.036, 0.043, 0, 0.001, 0}};
+  model.abad = {0.54, {0, 0.036, 0}, {381e-6, 560e-6, 444e-6, 58e-6, 0.45e-6, 0.95e-6}};
+  model.thigh = {0.634, {0, 0.016, -0.02}, {1983e-6, 2103e-6, 408e-6, 245e-6, 13e-6, 1.5e-6}};
+  model.shank = {0.064, {0, 0, -0.061}, {245e-6, 248e-6, 6e-6, 0, 0, 0}};
+  for (robot::Actuator& actuator : model.actuators) {
+    actuator.gear_ratio = 6.0;
+    actuator.rotor_inertia_kg_m2 = 63e-6;
+    actuator.rotor_mass_kg = 0.055;
+  }
+  robot::Dynamics dynamics;
+  dynamics.reset(model);
+  Random random(14);
+  for (int i = 0; i < 500; ++i) {
+    robot::MotionState state;
+    robot::GeneralisedVector acceleration;
+    for (int k = 0; k < robot::kVelocities; ++k) {
+      state.velocity[k] = random.uniform(-5, 5);
+      acceleration[k] = random.uniform(-20, 20);
+    }
+    for (int k = 0; k < 12; ++k) state.q_rad[k] = random.uniform(-2, 2);
+    state.R_OB = geometry::from_roll_pitch_yaw(random.uniform(-1, 1), random.uniform(-1, 1),
+                                               random.uniform(-3, 3));
+    dynamics.update(state);
+    robot::MassMatrix mass;
+    dynamics.mass_matrix(mass);
+    mix(hash, mass);
+    mix(hash, dynamics.inverse_dynamics(acceleration));
+    mix(hash, dynamics.centroid().angular_momentum_B_kg_m2_s);
+    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+      const robot::PointMotion foot = dynamics.foot(leg, Vector3(0.001, 0, -0.017));
+      mix(hash, foot.jacobian_B);
+      mix(hash, foot.bias_B_m_s2);
+    }
+    robot::MassFactor factor;
+    hash.byte(factor.factor(mass) ? 1 : 0);
+    mix(hash, factor.solve(acceleration));
+    factor.inverse(mass);
+    mix(hash, mass);
   }
 }
 

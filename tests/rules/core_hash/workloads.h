@@ -26,6 +26,7 @@ void hash_elementary(Fnv64& hash);
 void hash_linear_algebra(Fnv64& hash);
 void hash_geometry(Fnv64& hash);
 void hash_kinematics(Fnv64& hash);
+void hash_dynamics(Fnv64& hash);
 void hash_actuation(Fnv64& hash);
 void hash_attitude(Fnv64& hash);
 void hash_mapping(Fnv64& hash);
