@@ -130,6 +130,34 @@ struct ForceConfig {
   }
 };
 
+// Convex MPC: sum of weight * error^2 over the ends of the steps + effort_weight * |force|^2.
+struct MpcConfig {
+  double step_s = 0;  // of the horizon, which has ten
+  double friction = 0;
+  double min_normal_N = 0;  // of a foot that stands
+  double max_normal_N = 0;
+  std::array<double, 3> attitude_weight{};  // roll, pitch, yaw [1/rad^2]
+  std::array<double, 3> position_weight{};  // O axes [1/m^2]
+  std::array<double, 3> rate_weight{};      // O axes [s^2/rad^2]
+  std::array<double, 3> velocity_weight{};  // O axes [s^2/m^2]
+  double effort_weight = 0;                 // [1/N^2]
+  double max_residual_N = 0;                // above this the solution is not used
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("step_s", self.step_s, {0.01, 0.1}, "of the horizon, which has ten");
+    visit.real("friction", self.friction, {0.05, 2.0}, "pyramid half-width over normal force");
+    visit.real("min_normal_N", self.min_normal_N, {0.0, 1000.0}, "of a foot that stands");
+    visit.real("max_normal_N", self.max_normal_N, {1.0, 5000.0}, "of a foot that stands");
+    visit.reals("attitude_weight", self.attitude_weight, {0.0, 1000.0}, "roll, pitch, yaw");
+    visit.reals("position_weight", self.position_weight, {0.0, 1000.0}, "x, y, z");
+    visit.reals("rate_weight", self.rate_weight, {0.0, 1000.0}, "of the angular velocity, x, y, z");
+    visit.reals("velocity_weight", self.velocity_weight, {0.0, 1000.0}, "x, y, z");
+    visit.real("effort_weight", self.effort_weight, {1e-7, 1.0}, "on the forces");
+    visit.real("max_residual_N", self.max_residual_N, {0.01, 1000.0}, "to use a solution");
+  }
+};
+
 struct StandUpConfig {
   double fold_s = 0;                   // to the folded pose
   double rise_s = 0;                   // to standing
@@ -153,6 +181,7 @@ struct ControlConfig {
   SwingConfig swing;
   BodyConfig body;
   ForceConfig force;
+  MpcConfig mpc;
   StandUpConfig stand_up;
 
   template <class Self, class Visitor>
@@ -162,6 +191,7 @@ struct ControlConfig {
     visit.group("swing", self.swing);
     visit.group("body", self.body);
     visit.group("force", self.force);
+    visit.group("mpc", self.mpc);
     visit.group("stand_up", self.stand_up);
   }
 };

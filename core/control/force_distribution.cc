@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/control/friction_pyramid.h"
 #include "core/math/elementary.h"
 
 namespace surefoot::control {
@@ -11,8 +12,6 @@ namespace {
 // about 10; their geometric mean converges fastest (measured in tests/unit/control).
 constexpr double kPenalty = 0.4;
 constexpr double kOverRelaxation = 1.6;
-
-double magnitude(double x) { return x < 0.0 ? -x : x; }
 
 Eigen::Matrix<double, 6, 12> wrench_matrix(const ForceProblem& problem) {
   Eigen::Matrix<double, 6, 12> a;
@@ -35,18 +34,9 @@ Eigen::Matrix<double, 6, 12> wrench_matrix(const ForceProblem& problem) {
 }  // namespace
 
 Vector3 project_onto_pyramid(const Vector3& f, double mu, double low, double high) {
-  // For a given z the nearest x and y are clamped to +-mu z. The distance is convex in z with a
-  // piecewise linear derivative; its root is found segment by segment, then clamped.
-  const double ax = magnitude(f[0]);
-  const double ay = magnitude(f[1]);
-  const double larger = ax > ay ? ax : ay;
-  const double smaller = ax > ay ? ay : ax;
-  double z = f[2];                                                            // no side active
-  if (larger > mu * z) z = (f[2] + mu * larger) / (1.0 + mu * mu);            // one side
-  if (smaller > mu * z) z = (f[2] + mu * (ax + ay)) / (1.0 + 2.0 * mu * mu);  // both
-  z = math::clamp(z, low, high);
-  const double side = mu * (z > 0.0 ? z : 0.0);
-  return {math::clamp(f[0], -side, side), math::clamp(f[1], -side, side), z};
+  Vector3 nearest = f;
+  FrictionPyramid<double>(mu).project(nearest[0], nearest[1], nearest[2], low, high);
+  return nearest;
 }
 
 void ForceDistribution::reset(const ForceConfig& config) {

@@ -1,9 +1,11 @@
 // Workloads of core/control.
 #include "core/base/random.h"
+#include "core/control/convex_mpc.h"
 #include "core/control/force_distribution.h"
 #include "core/control/gait.h"
 #include "core/control/swing.h"
 #include "tests/rules/core_hash/workloads.h"
+#include "tests/support/mpc_problems.h"
 
 namespace surefoot::tests {
 
@@ -55,6 +57,25 @@ void hash_force_distribution(Fnv64& hash) {
     }
     const control::ForceSolution& solution = forces.solve(problem);
     for (const Vector3& force : solution.force_O_N) mix(hash, force);
+    mix(hash, solution.residual_N);
+  }
+}
+
+void hash_convex_mpc(Fnv64& hash) {
+  static control::ConvexMpc mpc;
+  const control::MpcConfig config = mpc_config();
+  mpc.reset(config);
+  Random random(10);
+  for (int i = 0; i < 140; ++i) {
+    const MpcGait& gait = kMpcGaits[static_cast<std::size_t>(i) % kMpcGaits.size()];
+    control::MpcProblem problem = random_mpc_problem(random, gait, config, i % 2 == 0 ? 0.0 : 1.0);
+    problem.steps_since_last = i % 3 == 0 ? 1 : 100;
+    const control::MpcSolution& solution = mpc.solve(problem);
+    for (std::size_t k = 0; k < control::kMpcHorizon; ++k) {
+      for (const Vector3& force : solution.force_O_N[k]) mix(hash, force);
+      mix(hash, solution.predicted[k].p_OB_m);
+      mix(hash, solution.predicted[k].roll_pitch_yaw_rad);
+    }
     mix(hash, solution.residual_N);
   }
 }

@@ -22,6 +22,7 @@ constexpr Workload kWorkloads[] = {
     {"mapping", surefoot::tests::hash_mapping},
     {"swing", surefoot::tests::hash_swing},
     {"force_distribution", surefoot::tests::hash_force_distribution},
+    {"convex_mpc", surefoot::tests::hash_convex_mpc},
 };
 
 }  // namespace
