@@ -1,10 +1,10 @@
 // Predictive control of the trunk: the feet's forces over the next ten steps of the horizon.
 //
-// Model: one rigid body on massless legs (Di Carlo et al., IROS 2018; Kim et al. 2019, whose control
-// paper 002 uses, section IV), linear about the reference: angles change as T(yaw) omega, the inertia
-// turns with the reference's yaw, levers run from the reference's place to the contacts that the
-// gait and the foothold plan name. Zero-order hold is exact: the model is nilpotent, its exponential
-// ends at dt^2.
+// Model: one rigid body on massless legs (Di Carlo et al., IROS 2018; Kim et al. 2019, whose
+// control paper 002 uses, section IV), linear about the reference: angles change as T(yaw) omega,
+// the inertia turns with the reference's yaw, levers run from the reference's place to the contacts
+// that the gait and the foothold plan name. Zero-order hold is exact: the model is nilpotent, its
+// exponential ends at dt^2.
 //
 //   minimise  sum over steps |x - x_reference|^2_weights + effort |f|^2
 //   subject to, per standing foot:  |fx|, |fy| <= mu fz,  min <= fz <= max
