@@ -286,28 +286,25 @@ TEST(ConvexMpc, IsFeasibleFarFromAnythingSensible) {
   }
 }
 
-// The same task step after step: the warm start must not be worse than the cold one.
-TEST(ConvexMpc, ShiftedStartIsNearer) {
-  const MpcConfig config = mpc_config();
-  const auto warm = make(config);
-  const auto cold = make(config);
+// The same step once more begins where the last one ended, and so gets nearer.
+TEST(ConvexMpc, TheLastSolutionIsTheStart) {
+  MpcConfig config = mpc_config();
+  config.effort_weight = 2e-6;  // slow: with the usual one nothing is left to gain
+  config.max_residual_N = 1000.0;
+  const auto mpc = make(config);
   Random random(71);
   double warm_sum = 0;
   double cold_sum = 0;
-  MpcProblem problem = random_mpc_problem(random, kMpcGaits[6], config, 1.0);
-  for (int i = 0; i < 30; ++i) {
-    problem.steps_since_last = 1;
-    warm_sum += warm->solve(problem).residual_N;
+  for (std::size_t trial = 0; trial < 700; ++trial) {
+    MpcProblem problem =
+        random_mpc_problem(random, kMpcGaits[trial % kMpcGaits.size()], config, 1.0);
     problem.steps_since_last = kMpcHorizon;
-    cold_sum += cold->solve(problem).residual_N;
-    const MpcState& next = cold->solution().predicted[0];
-    problem.p_OB_m = next.p_OB_m;
-    problem.v_OB_m_s = next.v_OB_m_s;
-    problem.angular_velocity_O_rad_s = next.angular_velocity_O_rad_s;
-    const Vector3& angles = next.roll_pitch_yaw_rad;
-    problem.R_OB = geometry::from_roll_pitch_yaw(angles[0], angles[1], angles[2]);
+    cold_sum += mpc->solve(problem).residual_N;
+    problem.steps_since_last = 0;
+    warm_sum += mpc->solve(problem).residual_N;
   }
-  EXPECT_LE(warm_sum, cold_sum);
+  std::printf("residuals: cold %.6f N, again %.6f N\n", cold_sum, warm_sum);
+  EXPECT_LT(warm_sum, 0.5 * cold_sum);
 }
 
 TEST(ConvexMpc, FallsBackToTheShiftedPlanThenToTheWeight) {
