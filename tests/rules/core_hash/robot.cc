@@ -66,8 +66,10 @@ void hash_dynamics(Fnv64& hash) {
       acceleration[k] = random.uniform(-20, 20);
     }
     for (int k = 0; k < 12; ++k) state.q_rad[k] = random.uniform(-2, 2);
-    state.R_OB = geometry::from_roll_pitch_yaw(random.uniform(-1, 1), random.uniform(-1, 1),
-                                               random.uniform(-3, 3));
+    const double roll_rad = random.uniform(-1, 1);
+    const double pitch_rad = random.uniform(-1, 1);
+    const double yaw_rad = random.uniform(-3, 3);
+    state.R_OB = geometry::from_roll_pitch_yaw(roll_rad, pitch_rad, yaw_rad);
     dynamics.update(state);
     robot::MassMatrix mass;
     dynamics.mass_matrix(mass);

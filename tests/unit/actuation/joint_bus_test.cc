@@ -434,7 +434,8 @@ TEST_F(JointBusTest, TwoBusesWithTheSameHistorySendTheSameBytes) {
       c.torque_Nm = random.uniform(-30.0, 30.0);
       c.kp_Nm_rad = 20.0;
     }
-    const CanFrame frame = reply_frame(random.below(12), random.uniform(-12.0, 12.0));
+    const std::uint32_t joint = random.below(12);
+    const CanFrame frame = reply_frame(joint, random.uniform(-12.0, 12.0));
     bus_.receive({&frame, 1});
     other.receive({&frame, 1});
     Frames a;

@@ -117,8 +117,9 @@ CandumpEntry random_entry(Random& random) {
   CandumpEntry entry;
   CanFrame& frame = entry.frame;
   const std::uint32_t kind = random.below(6);
-  frame.stamp = {static_cast<std::int64_t>(random.next_u32()) * 1'000'000'000 +
-                 static_cast<std::int64_t>(random.below(1'000'000)) * 1000};
+  const std::int64_t seconds = random.next_u32();
+  const std::int64_t microseconds = random.below(1'000'000);
+  frame.stamp = {seconds * 1'000'000'000 + microseconds * 1000};
   entry.interface_name = kind % 2 == 0 ? "can0" : "abcdefghijklmno";
   frame.id = random.next_u32() & 0x7FFu;
   if (kind == 1 || kind == 4) {

@@ -89,8 +89,8 @@ TEST(MapWindow, MaxAlongASegmentAgainstBruteForce) {
     const auto window = random_window(seed);
     const double x0 = window->first.ix * kSize;
     const double y0 = window->first.iy * kSize;
-    const Vector2 a(x0 + random.uniform(-0.3, 1.8), y0 + random.uniform(-0.3, 1.8));
-    const Vector2 b(x0 + random.uniform(-0.3, 1.8), y0 + random.uniform(-0.3, 1.8));
+    const Vector2 a{x0 + random.uniform(-0.3, 1.8), y0 + random.uniform(-0.3, 1.8)};
+    const Vector2 b{x0 + random.uniform(-0.3, 1.8), y0 + random.uniform(-0.3, 1.8)};
     const double radius = random.uniform(0, 0.1);
     bool found = false;
     double highest = -1e9;

@@ -286,7 +286,8 @@ TEST(Dynamics, InverseDynamicsIsMassTimesAccelerationPlusBias) {
   dynamics.reset(full_mini_cheetah());
   Random random(6);
   for (int trial = 0; trial < 1000; ++trial) {
-    dynamics.update(motion(random_place(random), random_vector(random, 8.0)));
+    const Place place = random_place(random);
+    dynamics.update(motion(place, random_vector(random, 8.0)));
     const GeneralisedVector a = random_vector(random, 50.0);
     MassMatrix m;
     dynamics.mass_matrix(m);

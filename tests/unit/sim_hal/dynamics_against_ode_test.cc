@@ -128,7 +128,7 @@ double disagreement(std::uint64_t seed, double step_s) {
   dynamics.reset(model);
   robot::GeneralisedVector nu;
   for (int i = 0; i < robot::kVelocities; ++i) nu[i] = random.uniform(-5, 5);
-  const Vector3 turn(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2));
+  const Vector3 turn{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)};
   throw_robot(articulation, dynamics, geometry::to_matrix(geometry::from_rotation_vector(turn)),
               nu);
   articulation.update();
