@@ -21,7 +21,9 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   if (config.control.foothold.search_radius_m > search_limit_m) return Status::kOutOfRange;
   const Status wired = bus_.configure(model, actuation);
   if (!ok(wired)) return wired;
-  const Status mapped = map_.reset(config.mapping, model);
+  const mapping::TraversabilityLimits limits = mapping::traversability_limits(
+      config.mapping, model, config.control.body.height_m, config.control.swing.clearance_m);
+  const Status mapped = map_.reset(config.mapping, limits, model);
   if (!ok(mapped)) return mapped;
   estimator_.reset(config.estimation, model, tick_s_);
   history_.clear();

@@ -26,7 +26,8 @@ void clear(mapping::MapWindow& window) {
 
 }  // namespace
 
-Status MapTask::reset(const mapping::MappingConfig& config, const robot::RobotModel& model) {
+Status MapTask::reset(const mapping::MappingConfig& config,
+                      const mapping::TraversabilityLimits& limits, const robot::RobotModel& model) {
   model_ = model;
   enabled_ = config.enabled;
   counters_ = MapTaskCounters{};
@@ -34,7 +35,8 @@ Status MapTask::reset(const mapping::MappingConfig& config, const robot::RobotMo
   const auto& rpy = mount.roll_pitch_yaw_rad;
   X_BC_.rotation.matrix = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]) * optical_axes();
   X_BC_.origin.m = from_array(mount.position_B_m);
-  const Status status = mapper_.configure(config, mapping::sensor_model(model.depth_camera));
+  const Status status =
+      mapper_.configure(config, mapping::sensor_model(model.depth_camera), limits);
   if (!ok(status)) return status;
   // Touch every page now: no page fault may happen in a tick.
   frame_.depth.fill(0);

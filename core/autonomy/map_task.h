@@ -26,7 +26,8 @@ struct MapTaskCounters {
 class MapTask {
  public:
   // kInvalid: configuration out of its domain.
-  Status reset(const mapping::MappingConfig& config, const robot::RobotModel& model);
+  Status reset(const mapping::MappingConfig& config, const mapping::TraversabilityLimits& limits,
+               const robot::RobotModel& model);
 
   // The ground under the standing robot, vouched for by the operator.
   Status assume_pad(const mapping::AssumedPad& pad);

@@ -104,7 +104,7 @@ Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& que
     if (least > query.max_radius_m || (found && least > best_cost)) break;
     const CellIndex index = nominal + CellIndex{offset.dx, offset.dy};
     const WindowCell* cell = window.find(index);
-    if (cell == nullptr || cell->foothold != FootholdClass::kSteppable) continue;
+    if (cell == nullptr || cell->traversability != Traversability::kSteppable) continue;
     const double x = i == 0 ? query.x_O_m : cell_centre(index.ix, size);
     const double y = i == 0 ? query.y_O_m : cell_centre(index.iy, size);
     const double distance =

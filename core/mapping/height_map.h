@@ -93,14 +93,11 @@ class HeightMap {
   // of memory; calls visit(ix, cell&) in ascending ix.
   template <class Visit>
   void for_row(std::int32_t iy, std::int32_t ix_begin, std::int32_t ix_end, Visit&& visit) {
-    if (ix_begin >= ix_end) return;
-    SUREFOOT_ASSERT(contains({ix_begin, iy}) && contains({ix_end - 1, iy}));
-    const std::size_t row = wrap(iy) * kSide;
-    std::size_t column = wrap(ix_begin);
-    for (std::int32_t ix = ix_begin; ix < ix_end; ++ix) {
-      visit(ix, cells_[row + column]);
-      if (++column == kSide) column = 0;
-    }
+    visit_row(*this, iy, ix_begin, ix_end, visit);
+  }
+  template <class Visit>
+  void for_row(std::int32_t iy, std::int32_t ix_begin, std::int32_t ix_end, Visit&& visit) const {
+    visit_row(*this, iy, ix_begin, ix_end, visit);
   }
 
   // Quick access for loops around one cell of the map: |dx|, |dy| < kSide / 2, nullptr outside.
@@ -172,6 +169,18 @@ class HeightMap {
   }
 
  private:
+  template <class Self, class Visit>
+  static void visit_row(Self& self, std::int32_t iy, std::int32_t ix_begin, std::int32_t ix_end,
+                        Visit& visit) {
+    if (ix_begin >= ix_end) return;
+    SUREFOOT_ASSERT(self.contains({ix_begin, iy}) && self.contains({ix_end - 1, iy}));
+    const std::size_t row = wrap(iy) * kSide;
+    std::size_t column = wrap(ix_begin);
+    for (std::int32_t ix = ix_begin; ix < ix_end; ++ix) {
+      visit(ix, self.cells_[row + column]);
+      if (++column == kSide) column = 0;
+    }
+  }
   static constexpr std::uint32_t offset(std::int32_t i, std::int32_t first) {
     return static_cast<std::uint32_t>(i) - static_cast<std::uint32_t>(first);
   }

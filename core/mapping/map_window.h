@@ -9,21 +9,16 @@
 #include "core/base/status.h"
 #include "core/base/time.h"
 #include "core/mapping/height_map.h"
+#include "core/mapping/traversability.h"
 
 namespace surefoot::mapping {
 
 inline constexpr std::int32_t kWindowSide = 100;
 
-enum class FootholdClass : std::uint8_t {
-  kUnknown = 0,  // too little of the patch under the foot is known
-  kSteppable,
-  kNotSteppable,  // too steep, too rough, or beside an edge
-};
-
 struct WindowCell {
   float height_m = 0;  // measured, assumed, bridged: height in O. bounded: the ceiling. unknown: 0
   CellState state = CellState::kUnknown;
-  FootholdClass foothold = FootholdClass::kUnknown;
+  Traversability traversability = Traversability::kUnknown;
   bool bridged = false;  // a hole of one cell filled from its neighbours; state says what it was
   std::uint8_t margin_cells = 0;  // steppable: cells to the nearest that is not, at most
                                   // kMaxMargin_cells (Chebyshev distance)
@@ -35,14 +30,12 @@ struct WindowCell {
   static void fields(Self& self, Visitor& visit) {
     visit("height_m", self.height_m);
     visit("state", self.state);
-    visit("foothold", self.foothold);
+    visit("traversability", self.traversability);
     visit("bridged", self.bridged);
     visit("margin_cells", self.margin_cells);
   }
 };
 static_assert(sizeof(WindowCell) == 8);
-
-inline constexpr std::uint8_t kMaxMargin_cells = 3;
 
 // Statistics of the cells with height whose centres lie within a radius.
 struct PatchStatistics {

@@ -44,14 +44,18 @@ std::int16_t to_mm(double metres) {
 
 }  // namespace
 
-Status Mapper::configure(const MappingConfig& config, const DepthSensorModel& sensor) {
-  if (!ok(validate(config)) || !ok(validate(sensor))) return Status::kInvalid;
+Status Mapper::configure(const MappingConfig& config, const DepthSensorModel& sensor,
+                         const TraversabilityLimits& limits) {
+  if (!ok(validate(config)) || !ok(validate(sensor)) || !ok(validate(limits))) {
+    return Status::kInvalid;
+  }
   config_ = config;
   sensor_ = sensor;
   configured_ = true;
   stamp_ = TimeNs{};
   frames_ = 0;
   map_.reset({0, 0});
+  classifier_.reset(config, limits);
   return Status::kOk;
 }
 
@@ -228,7 +232,7 @@ Status Mapper::publish(double x_O_m, double y_O_m, MapWindow& out) {
   if (!configured_) return Status::kUnavailable;
   if (!math::is_finite(x_O_m) || !math::is_finite(y_O_m)) return Status::kInvalid;
   if (!mapping::is_mappable(x_O_m) || !mapping::is_mappable(y_O_m)) return Status::kOutOfRange;
-  classifier_.run(map_, config_, cell_index(x_O_m, y_O_m, config_.cell_size_m), out);
+  classifier_.run(map_, cell_index(x_O_m, y_O_m, config_.cell_size_m), out);
   out.stamp = stamp_;
   out.frames = frames_;
   out.cell_size_m = config_.cell_size_m;

@@ -36,7 +36,8 @@ class Mapper {
  public:
   // Checks and keeps the configuration and forgets the map. Touches every page of the object.
   // kInvalid: see validate().
-  Status configure(const MappingConfig& config, const DepthSensorModel& sensor);
+  Status configure(const MappingConfig& config, const DepthSensorModel& sensor,
+                   const TraversabilityLimits& limits);
   bool configured() const { return configured_; }
 
   // Marks the cells of the rectangle that were never measured as assumed and centres the map there

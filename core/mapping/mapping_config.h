@@ -36,11 +36,11 @@ struct MappingConfig {
   double ray_step_cells = 1;
   // Footholds
   bool bridge_holes = false;
-  std::uint8_t foothold_radius_cells = 1;
   std::uint8_t foothold_max_unknown = 0;
   double foothold_max_raise_m = 0;
   double foothold_max_drop_m = 0;
   double foothold_max_slope = 0;
+  double max_jump_m = 0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -73,16 +73,16 @@ struct MappingConfig {
                   "every n-th ray of a frame bounds unseen cells; the phase turns with the frames");
     visit.real("ray_step_cells", self.ray_step_cells, {0.25, 4.0}, "step of those rays");
     visit.boolean("bridge_holes", self.bridge_holes, "fill single cells from their 8 neighbours");
-    visit.integer("foothold_radius_cells", self.foothold_radius_cells, {1, 5},
-                  "half width of the patch under a foot");
-    visit.integer("foothold_max_unknown", self.foothold_max_unknown, {0, 60},
-                  "cells without height allowed in the patch");
+    visit.integer("foothold_max_unknown", self.foothold_max_unknown, {0, 12},
+                  "cells without height allowed in the patch of 17");
     visit.real("foothold_max_raise_m", self.foothold_max_raise_m, {0.001, 0.5},
                "highest cell of the patch above its centre");
     visit.real("foothold_max_drop_m", self.foothold_max_drop_m, {0.001, 0.5},
                "lowest cell of the patch below its centre");
     visit.real("foothold_max_slope", self.foothold_max_slope, {0.01, 3.0},
-               "tangent of the fitted plane's inclination");
+               "tangent of the steepest ground under a foot");
+    visit.real("max_jump_m", self.max_jump_m, {0.0, 5.0},
+               "highest rise or drop that a jump takes; higher is impassable");
   }
 };
 

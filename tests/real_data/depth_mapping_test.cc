@@ -168,7 +168,7 @@ Comparison run_kitchen(const std::string& folder, const std::vector<PosedFrame>&
   const Vector3 origin = frames[0].p_WC_m;
   const mapping::MappingConfig config = mapping::test::recommended_config();
   auto mapper = std::make_unique<Mapper>();
-  EXPECT_EQ(mapper->configure(config, kKinect), Status::kOk);
+  EXPECT_EQ(mapper->configure(config, kKinect, mapping::test::limits_of(config)), Status::kOk);
   for (std::size_t i = 1; i < frames.size(); i += 2) {
     EXPECT_TRUE(read_depth(frames[i].image_path, *frame)) << frames[i].image_path;
     frame->stamp = milliseconds(200 * static_cast<std::int64_t>(i) + 1);  // every 6th of 30 Hz
@@ -230,7 +230,8 @@ TEST(RealSenseFrames, AreReadAndInserted) {
       .inverse_depth_sigma_per_m = 0.08 / (focal_px * baseline_m),
       .min_range_m = 0.17,
       .max_range_m = 4.0};
-  ASSERT_EQ(mapper->configure(mapping::test::recommended_config(), sensor), Status::kOk);
+  const mapping::MappingConfig config = mapping::test::recommended_config();
+  ASSERT_EQ(mapper->configure(config, sensor, mapping::test::limits_of(config)), Status::kOk);
   const CameraPose pose = mapping::test::look({0, 0, 0.5}, 0, 0);
   mapping::IntegrationReport report;
   for (int i = 0; i < 2; ++i) {

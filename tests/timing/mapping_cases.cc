@@ -84,7 +84,10 @@ class Downward {
     mapping::MappingConfig mapping = config_.autonomy.mapping;
     mapping.max_height_above_body_m = 3.0;
     SUREFOOT_ASSERT(
-        ok(mapper_.configure(mapping, mapping::sensor_model(config_.robot.depth_camera))));
+        ok(mapper_.configure(mapping, mapping::sensor_model(config_.robot.depth_camera),
+                             mapping::traversability_limits(
+                                 mapping, config_.robot, config_.autonomy.control.body.height_m,
+                                 config_.autonomy.control.swing.clearance_m))));
     R_OC_ << 0, -1, 0, -1, 0, 0, 0, 0, -1;
   }
 

@@ -17,16 +17,16 @@ constexpr double kGravity_m_s2 = 9.81;
 constexpr double kStep_s = 0.002;
 
 // A level window of 100 x 100 cells around O's origin where every cell has a height.
-void fill(mapping::MapWindow& window, double cell_size_m, mapping::FootholdClass foothold) {
+void fill(mapping::MapWindow& window, double cell_size_m, mapping::Traversability traversability) {
   window.frames = 1;
   window.stamp = milliseconds(1);
   window.cell_size_m = cell_size_m;
   window.first = {-mapping::kWindowSide / 2, -mapping::kWindowSide / 2};
   mapping::WindowCell cell;
   cell.state = mapping::CellState::kMeasured;
-  cell.foothold = foothold;
+  cell.traversability = traversability;
   cell.margin_cells =
-      foothold == mapping::FootholdClass::kSteppable ? mapping::kMaxMargin_cells : 0;
+      traversability == mapping::Traversability::kSteppable ? mapping::kMaxMargin_cells : 0;
   window.cells.fill(cell);
 }
 
@@ -135,15 +135,15 @@ class FootholdSearch final : public WorkCase {
   bool prepare(std::size_t round) override {
     if (round > 0) return false;
     const apps::Config config = load({});
-    fill(window_, config.autonomy.mapping.cell_size_m, mapping::FootholdClass::kNotSteppable);
+    fill(window_, config.autonomy.mapping.cell_size_m, mapping::Traversability::kUnsteppable);
     const double size = window_.cell_size_m;
     query_.x_O_m = query_.y_O_m = 0.5 * size;
     query_.max_radius_m = mapping::kMaxSearchRadius_cells * size;
     query_.margin_weight_m = config.autonomy.control.foothold.margin_weight_m;
     constexpr std::int32_t kMiddle = mapping::kWindowSide / 2;
     const std::int32_t last = kMiddle + mapping::kMaxSearchRadius_cells;
-    window_.cells[static_cast<std::size_t>(last * mapping::kWindowSide + kMiddle)].foothold =
-        mapping::FootholdClass::kSteppable;
+    window_.cells[static_cast<std::size_t>(last * mapping::kWindowSide + kMiddle)].traversability =
+        mapping::Traversability::kSteppable;
     return true;
   }
   void run() override { found_ = mapping::find_foothold(window_, query_); }
@@ -166,7 +166,7 @@ class Retarget final : public WorkCase {
     const apps::Config config = load({"control.gaits.trot.offset=[0.0, 0.0, 0.0, 0.0]",
                                       "control.foothold.search_radius_m=0.30"});
     place(config);
-    fill(window_, config.autonomy.mapping.cell_size_m, mapping::FootholdClass::kSteppable);
+    fill(window_, config.autonomy.mapping.cell_size_m, mapping::Traversability::kSteppable);
     locomotion_.reset(config.autonomy.control, config.robot);
     locomotion_.start(state_);
     for (int i = 0; i < 1000 && !all_swing(); ++i) update();
@@ -219,7 +219,7 @@ class Retarget final : public WorkCase {
       for (const control::LegStatus& leg : locomotion_.legs()) {
         const Vector2 nominal = leg.foothold.nominal_O_m.head<2>();
         if ((centre - nominal).norm() > 0.28) continue;
-        cell.foothold = mapping::FootholdClass::kNotSteppable;
+        cell.traversability = mapping::Traversability::kUnsteppable;
       }
     }
   }

@@ -36,12 +36,23 @@ mapping::MappingConfig configuration() {
   config.clear_frames = 3;
   config.ceiling_pixel_stride = 3;
   config.bridge_holes = true;
-  config.foothold_radius_cells = 2;
   config.foothold_max_unknown = 3;
   config.foothold_max_raise_m = 0.02;
   config.foothold_max_drop_m = 0.02;
   config.foothold_max_slope = 0.5;
+  config.max_jump_m = 0.05;
   return config;
+}
+
+// The steps of the scene are too high for a step here, so that more classes are seen.
+mapping::TraversabilityLimits limits() {
+  const mapping::MappingConfig config = configuration();
+  return {.max_slope = config.foothold_max_slope,
+          .max_raise_m = config.foothold_max_raise_m,
+          .max_drop_m = config.foothold_max_drop_m,
+          .max_unknown = config.foothold_max_unknown,
+          .max_step_m = 0.03,
+          .max_jump_m = config.max_jump_m};
 }
 
 mapping::CameraPose camera_pose(int frame) {
@@ -79,7 +90,8 @@ void hash_mapping(Fnv64& hash) {
   const auto mapper = std::make_unique<mapping::Mapper>();
   const auto frame = std::make_unique<hal::DepthFrame>();
   const auto window = std::make_unique<mapping::MapWindow>();
-  hash.byte(static_cast<std::uint8_t>(mapper->configure(configuration(), {0.0006, 0.17, 4.0})));
+  hash.byte(
+      static_cast<std::uint8_t>(mapper->configure(configuration(), {0.0006, 0.17, 4.0}, limits())));
   frame->intrinsics = {kWidth_px, kHeight_px, kFocal_px, kFocal_px, 79.5, 44.5};
   Random random(7);
   for (int i = 0; i < 20; ++i) {

@@ -48,8 +48,8 @@ std::unique_ptr<mapping::MapWindow> window_with_band(double from_x_m, double to_
       cell.state = mapping::CellState::kMeasured;
       cell.height_m = 0.02F;
       cell.margin_cells = 3;
-      cell.foothold = x > from_x_m && x < to_x_m ? mapping::FootholdClass::kNotSteppable
-                                                 : mapping::FootholdClass::kSteppable;
+      cell.traversability = x > from_x_m && x < to_x_m ? mapping::Traversability::kUnsteppable
+                                                       : mapping::Traversability::kSteppable;
     }
   }
   return window;

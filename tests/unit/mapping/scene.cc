@@ -130,12 +130,21 @@ MappingConfig recommended_config() {
   config.ceiling_pixel_stride = 3;
   config.ray_step_cells = 1;
   config.bridge_holes = true;
-  config.foothold_radius_cells = 2;
   config.foothold_max_unknown = 3;
   config.foothold_max_raise_m = 0.02;
   config.foothold_max_drop_m = 0.02;
   config.foothold_max_slope = 0.5;
+  config.max_jump_m = 0.27;
   return config;
+}
+
+TraversabilityLimits limits_of(const MappingConfig& config) {
+  return {.max_slope = config.foothold_max_slope,
+          .max_raise_m = config.foothold_max_raise_m,
+          .max_drop_m = config.foothold_max_drop_m,
+          .max_unknown = config.foothold_max_unknown,
+          .max_step_m = 0.12,
+          .max_jump_m = config.max_jump_m};
 }
 
 void render(const Scene& scene, const Camera& camera, TimeNs stamp, Random* random,
@@ -170,8 +179,8 @@ SelfModel bodiless(double x_O_m, double y_O_m, double z_O_m) {
 
 std::unique_ptr<Mapper> make_mapper(const MappingConfig& config) {
   auto mapper = std::make_unique<Mapper>();
-  const Status status =
-      mapper->configure(config, sensor_model(mini_cheetah_camera_specification()));
+  const Status status = mapper->configure(config, sensor_model(mini_cheetah_camera_specification()),
+                                          limits_of(config));
   SUREFOOT_ASSERT(ok(status));
   return mapper;
 }

@@ -52,6 +52,8 @@ CameraPose look(const Vector3& position_O_m, double yaw_rad, double down_rad, do
 Camera mini_cheetah_camera(const Vector3& position_O_m, double yaw_rad, double down_rad);
 robot::DepthCameraSpecification mini_cheetah_camera_specification();
 MappingConfig recommended_config();
+// With the step height of Mini-Cheetah.
+TraversabilityLimits limits_of(const MappingConfig& config);
 
 // random: nullptr for a frame without noise.
 void render(const Scene& scene, const Camera& camera, TimeNs stamp, Random* random,

@@ -32,7 +32,7 @@ std::unique_ptr<MapWindow> random_window(std::uint64_t seed) {
     if (cell.state == CellState::kUnknown) continue;
     cell.height_m = static_cast<float>(random.uniform(-0.1, 0.1));
     if (!cell.has_height() || random.below(4) != 0) continue;
-    cell.foothold = FootholdClass::kSteppable;
+    cell.traversability = Traversability::kSteppable;
     cell.margin_cells = static_cast<std::uint8_t>(1 + random.below(kMaxMargin_cells));
   }
   return window;
@@ -174,7 +174,7 @@ Candidate brute_force(const MapWindow& window, const FootholdQuery& query) {
   for (std::int32_t i = 0; i < kWindowSide * kWindowSide; ++i) {
     const CellIndex index = window.first + CellIndex{i % kWindowSide, i / kWindowSide};
     const WindowCell& cell = window.at(index);
-    if (cell.foothold != FootholdClass::kSteppable) continue;
+    if (cell.traversability != Traversability::kSteppable) continue;
     const double distance = distance_to(query, index);
     if (distance > query.max_radius_m || !in_reach(query, index)) continue;
     const double cost = cost_of(cell, query, distance);
@@ -191,7 +191,7 @@ TEST(FindFoothold, AgreesWithBruteForce) {
     auto window = random_window(static_cast<std::uint64_t>(trial));
     const std::uint32_t keep = 1 + random.below(60);  // thin the steppable cells to a share
     for (WindowCell& cell : window->cells) {
-      if (random.below(keep) != 0) cell.foothold = FootholdClass::kNotSteppable;
+      if (random.below(keep) != 0) cell.traversability = Traversability::kUnsteppable;
     }
     FootholdQuery query;
     query.x_O_m = window->first.ix * kSize + random.uniform(-0.2, 1.7);
@@ -212,7 +212,7 @@ TEST(FindFoothold, AgreesWithBruteForce) {
     ++found;
     const Foothold& foothold = result.value();
     ASSERT_TRUE(window->contains(foothold.cell));
-    ASSERT_EQ(window->at(foothold.cell).foothold, FootholdClass::kSteppable);
+    ASSERT_EQ(window->at(foothold.cell).traversability, Traversability::kSteppable);
     ASSERT_EQ(cell_index(foothold.x_O_m, foothold.y_O_m, kSize), foothold.cell);
     ASSERT_LE(foothold.distance_m, query.max_radius_m);
     ASSERT_NEAR(cost_of(window->at(foothold.cell), query, foothold.distance_m), expected.cost,
@@ -228,7 +228,7 @@ TEST(FindFoothold, AgreesWithBruteForce) {
 
 TEST(FindFoothold, EveryCornerOfTheWindow) {
   auto window = random_window(5);
-  for (WindowCell& cell : window->cells) cell.foothold = FootholdClass::kNotSteppable;
+  for (WindowCell& cell : window->cells) cell.traversability = Traversability::kUnsteppable;
   const double low_x = window->first.ix * kSize;
   const double low_y = window->first.iy * kSize;
   for (const double x : {low_x, low_x + kWindowSide * kSize}) {
@@ -280,8 +280,12 @@ class Classes : public testing::Test {
     cell.height_m = static_cast<float>(height);
     cell.state = state;
   }
+  void run(CellIndex centre, MapWindow& window) {
+    classifier_->reset(config_, test::limits_of(config_));
+    classifier_->run(*map_, centre, window);
+  }
   const WindowCell& classified(CellIndex index) {
-    classifier_->run(*map_, config_, {0, 0}, *window_);
+    run({0, 0}, *window_);
     return window_->at(index);
   }
 
@@ -293,44 +297,44 @@ class Classes : public testing::Test {
 
 TEST_F(Classes, FlatMeasuredAndAssumedGroundBearsAFoot) {
   fill(10, 0);
-  EXPECT_EQ(classified({0, 0}).foothold, FootholdClass::kSteppable);
+  EXPECT_EQ(classified({0, 0}).traversability, Traversability::kSteppable);
   EXPECT_EQ(classified({0, 0}).margin_cells, kMaxMargin_cells);
   set({0, 0}, 0, CellState::kAssumed);
-  EXPECT_EQ(classified({0, 0}).foothold, FootholdClass::kSteppable);
+  EXPECT_EQ(classified({0, 0}).traversability, Traversability::kSteppable);
 }
 
 TEST_F(Classes, UnknownAndBoundedNeverDo) {
-  classifier_->run(*map_, config_, {0, 0}, *window_);
+  run({0, 0}, *window_);
   for (const WindowCell& cell : window_->cells) {
-    ASSERT_EQ(cell.foothold, FootholdClass::kUnknown);
+    ASSERT_EQ(cell.traversability, Traversability::kUnknown);
   }
   for (std::int32_t iy = -60; iy <= 60; ++iy) {
     for (std::int32_t ix = -60; ix <= 60; ++ix) set({ix, iy}, 0, CellState::kBounded);
   }
-  classifier_->run(*map_, config_, {0, 0}, *window_);
+  run({0, 0}, *window_);
   for (const WindowCell& cell : window_->cells) {
-    ASSERT_EQ(cell.foothold, FootholdClass::kUnknown);
+    ASSERT_EQ(cell.traversability, Traversability::kUnknown);
     ASSERT_FALSE(cell.has_height());
   }
 }
 
 TEST_F(Classes, SlopeLimit) {
-  fill(10, 0.45);
-  EXPECT_EQ(classified({0, 0}).foothold, FootholdClass::kSteppable);
-  fill(10, 0.55);
-  EXPECT_EQ(classified({0, 0}).foothold, FootholdClass::kNotSteppable);
+  fill(12, 0.35);
+  EXPECT_EQ(classified({0, 0}).traversability, Traversability::kSteppable);
+  fill(12, 0.36);
+  EXPECT_EQ(classified({0, 0}).traversability, Traversability::kUnsteppable);
 }
 
 // A plane's slope is found where up to the allowed number of cells is missing.
 TEST_F(Classes, SlopeWithMissingCells) {
   config_.bridge_holes = false;
-  fill(10, 0.45);
+  fill(12, 0.34);
   set({1, 0}, 0, CellState::kUnknown);
   set({-2, 0}, 0, CellState::kUnknown);
   set({0, 2}, 0, CellState::kUnknown);
-  EXPECT_EQ(classified({0, 0}).foothold, FootholdClass::kSteppable);
+  EXPECT_EQ(classified({0, 0}).traversability, Traversability::kSteppable);
   set({0, 1}, 0, CellState::kUnknown);  // a fourth
-  EXPECT_EQ(classified({0, 0}).foothold, FootholdClass::kUnknown);
+  EXPECT_EQ(classified({0, 0}).traversability, Traversability::kUnknown);
 }
 
 TEST_F(Classes, StepsOnEitherSideAreKeptAway) {
@@ -338,12 +342,12 @@ TEST_F(Classes, StepsOnEitherSideAreKeptAway) {
   for (std::int32_t iy = -12; iy <= 12; ++iy) {
     for (std::int32_t ix = 3; ix <= 12; ++ix) set({ix, iy}, 0.05);
   }
-  EXPECT_EQ(classified({0, 0}).foothold, FootholdClass::kSteppable);
+  EXPECT_EQ(classified({0, 0}).traversability, Traversability::kSteppable);
   EXPECT_EQ(classified({0, 0}).margin_cells, 1);
   for (std::int32_t ix = 1; ix <= 4; ++ix) {
-    EXPECT_EQ(classified({ix, 0}).foothold, FootholdClass::kNotSteppable) << ix;
+    EXPECT_EQ(classified({ix, 0}).traversability, Traversability::kUnsteppable) << ix;
   }
-  EXPECT_EQ(classified({5, 0}).foothold, FootholdClass::kSteppable);
+  EXPECT_EQ(classified({5, 0}).traversability, Traversability::kSteppable);
 }
 
 TEST_F(Classes, OneHoleIsBridgedAndFlaggedTwoAreNot) {
@@ -352,11 +356,11 @@ TEST_F(Classes, OneHoleIsBridgedAndFlaggedTwoAreNot) {
   EXPECT_TRUE(classified({0, 0}).bridged);
   EXPECT_TRUE(classified({0, 0}).has_height());
   EXPECT_EQ(classified({0, 0}).state, CellState::kUnknown);
-  EXPECT_EQ(classified({0, 0}).foothold, FootholdClass::kSteppable);
+  EXPECT_EQ(classified({0, 0}).traversability, Traversability::kSteppable);
   EXPECT_EQ(map_->at({0, 0}).state, CellState::kUnknown);
   set({1, 0}, 0, CellState::kUnknown);
   EXPECT_FALSE(classified({0, 0}).bridged);
-  EXPECT_EQ(classified({0, 0}).foothold, FootholdClass::kUnknown);
+  EXPECT_EQ(classified({0, 0}).traversability, Traversability::kUnknown);
 }
 
 TEST_F(Classes, ABridgeStaysBelowTheCeiling) {
@@ -364,7 +368,7 @@ TEST_F(Classes, ABridgeStaysBelowTheCeiling) {
   set({0, 0}, -0.03, CellState::kBounded);
   EXPECT_TRUE(classified({0, 0}).bridged);
   EXPECT_EQ(classified({0, 0}).height_m, -0.03F);
-  EXPECT_NE(classified({0, 0}).foothold, FootholdClass::kSteppable);
+  EXPECT_NE(classified({0, 0}).traversability, Traversability::kSteppable);
 }
 
 // The class of a cell depends on the map, not on where the window ends.
@@ -376,14 +380,14 @@ TEST_F(Classes, WindowBorderIsInvisible) {
     }
   }
   auto other = std::make_unique<MapWindow>();
-  classifier_->run(*map_, config_, {0, 0}, *window_);
-  classifier_->run(*map_, config_, {33, -41}, *other);
+  run({0, 0}, *window_);
+  run({33, -41}, *other);
   int compared = 0;
   for (std::int32_t i = 0; i < kWindowSide * kWindowSide; ++i) {
     const CellIndex index = window_->first + CellIndex{i % kWindowSide, i / kWindowSide};
     const WindowCell* cell = other->find(index);
     if (cell == nullptr) continue;
-    ASSERT_EQ(cell->foothold, window_->at(index).foothold);
+    ASSERT_EQ(cell->traversability, window_->at(index).traversability);
     ASSERT_EQ(cell->margin_cells, window_->at(index).margin_cells);
     ASSERT_EQ(cell->height_m, window_->at(index).height_m);
     ++compared;
