@@ -350,6 +350,29 @@ TEST_F(Classes, StepsOnEitherSideAreKeptAway) {
   EXPECT_EQ(classified({5, 0}).traversability, Traversability::kSteppable);
 }
 
+// Ledges of several heights across the window: what the step height (0.12 m here) and the jump
+// (0.27 m) allow. Up and down are the same ledge.
+TEST_F(Classes, LedgesByHeight) {
+  const auto at_the_ledge = [this](double height) {
+    fill(12, 0);
+    for (std::int32_t iy = -12; iy <= 12; ++iy) {
+      for (std::int32_t ix = 1; ix <= 12; ++ix) set({ix, iy}, height);
+    }
+    const Traversability below = classified({0, 0}).traversability;
+    EXPECT_EQ(classified({1, 0}).traversability, below) << height;
+    EXPECT_EQ(classified({-4, 0}).traversability, Traversability::kSteppable) << height;
+    EXPECT_EQ(classified({5, 0}).traversability, Traversability::kSteppable) << height;
+    return below;
+  };
+  EXPECT_EQ(at_the_ledge(0.01), Traversability::kSteppable);
+  EXPECT_EQ(at_the_ledge(0.05), Traversability::kUnsteppable);
+  EXPECT_EQ(at_the_ledge(0.10), Traversability::kUnsteppable);
+  EXPECT_EQ(at_the_ledge(0.13), Traversability::kJumpOnly);
+  EXPECT_EQ(at_the_ledge(-0.13), Traversability::kJumpOnly);
+  EXPECT_EQ(at_the_ledge(0.25), Traversability::kJumpOnly);
+  EXPECT_EQ(at_the_ledge(0.30), Traversability::kImpassable);
+}
+
 TEST_F(Classes, OneHoleIsBridgedAndFlaggedTwoAreNot) {
   fill(10, 0);
   set({0, 0}, 0, CellState::kUnknown);
