@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -11,6 +12,7 @@
 
 #include "apps/common/figures.h"
 #include "apps/common/run.h"
+#include "apps/surefoot-lab/bench_mapping.h"
 
 namespace surefoot::apps {
 namespace {
@@ -62,13 +64,17 @@ int bench_pictures() {
 }  // namespace
 
 int bench(const std::string& name, Stack& stack) {
-  if (!name.empty() && name != "run" && name != "pictures") {
-    std::fputs(fmt::format("bench: '{}' is unknown; there are: run pictures\n", name).c_str(),
-               stderr);
+  if (!name.empty() && name != "run" && name != "pictures" && name != "mapping") {
+    std::fputs(
+        fmt::format("bench: '{}' is unknown; there are: run pictures mapping\n", name).c_str(),
+        stderr);
     return 2;
   }
-  if (name != "run") bench_pictures();
-  return name == "pictures" ? 0 : bench_run(stack);
+  int worst = 0;
+  if (name.empty() || name == "pictures") bench_pictures();
+  if (name.empty() || name == "mapping") worst = bench_mapping();
+  if (name.empty() || name == "run") worst = std::max(worst, bench_run(stack));
+  return worst;
 }
 
 }  // namespace surefoot::apps

@@ -1,6 +1,7 @@
 #include "core/mapping/line_of_sight.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/math/elementary.h"
 
@@ -14,67 +15,86 @@ constexpr double kLeastDescent = 0.1;
 class CellView {
  public:
   explicit CellView(const Sight& sight)
-      : sight_(sight), R_OC_(sight.X_OC.rotation.matrix), origin_(sight.X_OC.origin.m) {}
+      : sight_(sight),
+        x_C_(sight.X_OC.rotation.matrix.row(0).transpose()),
+        y_C_(sight.X_OC.rotation.matrix.row(1).transpose()),
+        z_C_(sight.X_OC.rotation.matrix.row(2).transpose()),
+        camera_z_m_(sight.X_OC.origin.m.z()) {
+    const double half = 0.5 * sight.config.cell_size_m;
+    half_diagonal_px_m_ = 1.4143 * half * std::max(sight.image.fx, sight.image.fy);
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      corners_[i] = x_C_ * (i % 2 == 0 ? -half : half) + y_C_ * (i / 2 == 0 ? -half : half);
+    }
+  }
 
   enum class Verdict { kNone, kConsistent, kSeenThrough };
 
   // offset_x, offset_y: the cell's centre from the camera, in O. Near the camera a cell is wider
   // than three pixels, and the surface may fill but a corner of it: all corners must be seen
-  // through.
+  // through, unless they lie within a pixel of the centre.
   Verdict look_at_cell(double offset_x, double offset_y, const MapCell& cell) const {
-    const Verdict verdict = look(offset_x, offset_y, cell);
-    if (verdict != Verdict::kSeenThrough) return verdict;
-    const double half = 0.5 * sight_.config.cell_size_m;
-    for (const double dx : {-half, half}) {
-      for (const double dy : {-half, half}) {
-        if (look(offset_x + dx, offset_y + dy, cell) != Verdict::kSeenThrough)
-          return Verdict::kNone;
+    const double rise = static_cast<double>(cell.height_m) - camera_z_m_;
+    const Vector3 centre_C = x_C_ * offset_x + y_C_ * offset_y + z_C_ * rise;
+    const double seen = seen_at(centre_C);
+    const double gap = seen - centre_C.z();
+    const double least = sight_.config.clear_margin_m;
+    if (!(seen > 0) || gap < -least) return Verdict::kNone;  // no answer, or hidden
+    if (gap <= least) return Verdict::kConsistent;
+    const double margin = height_margin(offset_x, offset_y, rise, cell);
+    if (!(gap > margin + depth_margin(seen))) return Verdict::kConsistent;
+    // Small in the image: the pixels around the centre's are those of the corners.
+    if (half_diagonal_px_m_ <= centre_C.z()) return Verdict::kSeenThrough;
+    for (const Vector3& corner_C : corners_) {
+      const Vector3 p_C = centre_C + corner_C;
+      const double behind = seen_at(p_C);
+      if (!(behind > 0) || !(behind - p_C.z() > margin + depth_margin(behind))) {
+        return Verdict::kNone;
       }
     }
     return Verdict::kSeenThrough;
   }
 
  private:
-  // One point at the cell's height.
-  Verdict look(double offset_x, double offset_y, const MapCell& cell) const {
-    const double rise = static_cast<double>(cell.height_m) - origin_.z();
-    const double z = R_OC_(0, 2) * offset_x + R_OC_(1, 2) * offset_y + R_OC_(2, 2) * rise;
-    if (z < sight_.sensor.min_range_m) return Verdict::kNone;
-    const double x = R_OC_(0, 0) * offset_x + R_OC_(1, 0) * offset_y + R_OC_(2, 0) * rise;
-    const double y = R_OC_(0, 1) * offset_x + R_OC_(1, 1) * offset_y + R_OC_(2, 1) * rise;
+  // Nearest depth around the point's pixel; 0: outside of the image, or not all measured.
+  double seen_at(const Vector3& p_C) const {
+    if (p_C.z() < sight_.sensor.min_range_m) return 0;
     const DepthImage& image = sight_.image;
-    const double u = image.fx * x / z + image.cx + 0.5;
-    const double v = image.fy * y / z + image.cy + 0.5;
-    if (!(u >= 0 && v >= 0 && u < image.width && v < image.height)) return Verdict::kNone;
-    const auto seen = static_cast<double>(
+    const double inverse = 1.0 / p_C.z();
+    const double u = image.fx * p_C.x() * inverse + image.cx + 0.5;
+    const double v = image.fy * p_C.y() * inverse + image.cy + 0.5;
+    if (!(u >= 0 && v >= 0 && u < image.width && v < image.height)) return 0;
+    return static_cast<double>(
         image.nearest_m[image.at(static_cast<std::int32_t>(u), static_cast<std::int32_t>(v))]);
-    const double gap = seen - z;
-    const double least = sight_.config.clear_margin_m;
-    if (!(seen > 0) || gap < -least) return Verdict::kNone;  // no answer, or hidden
-    if (gap <= least) return Verdict::kConsistent;
-    return gap > margin(seen, offset_x, offset_y, rise, cell) ? Verdict::kSeenThrough
-                                                              : Verdict::kConsistent;
   }
 
-  // How far behind the cell the ray must end: noise of the depth, and what an error of the cell's
-  // height or of the attitude amounts to along a ray that descends at a grazing angle.
-  double margin(double seen, double offset_x, double offset_y, double rise,
-                const MapCell& cell) const {
+  // How far behind the cell the ray must end: noise of the depth ...
+  double depth_margin(double seen) const {
+    const MappingConfig& config = sight_.config;
+    return config.clear_sigma *
+           (seen * seen * sight_.sensor.inverse_depth_sigma_per_m + config.depth_noise_floor_m);
+  }
+  // ... and what an error of the cell's height or of the attitude amounts to along a ray that
+  // descends at a grazing angle.
+  double height_margin(double offset_x, double offset_y, double rise, const MapCell& cell) const {
     const MappingConfig& config = sight_.config;
     const double range2 = offset_x * offset_x + offset_y * offset_y;
-    const double depth_sigma = seen * seen * sight_.sensor.inverse_depth_sigma_per_m;
     const double height_sigma = math::sqrt(static_cast<double>(cell.variance_m2) +
                                            math::square(config.attitude_noise_rad) * range2);
     const double range = math::sqrt(range2);
     const double descent =
         std::max((rise < 0 ? -rise : rise) / std::max(range, 1e-3), kLeastDescent);
-    return config.clear_margin_m + config.clear_sigma * (depth_sigma + config.depth_noise_floor_m) +
+    return config.clear_margin_m +
            (config.clear_height_margin_m + config.clear_sigma * height_sigma) / descent;
   }
 
   const Sight& sight_;
-  Matrix3 R_OC_;
-  Vector3 origin_;
+  // The axes of O, and the corners of a cell from its centre, in the camera's frame C.
+  Vector3 x_C_;
+  Vector3 y_C_;
+  Vector3 z_C_;
+  double camera_z_m_;
+  std::array<Vector3, 4> corners_;
+  double half_diagonal_px_m_ = 0;  // in pixels, times the depth at which it is seen
 };
 
 struct CellRange {

@@ -19,10 +19,10 @@ struct Sight {
 };
 
 // Every cell with a height within kMaxClearRadius_cells of the camera is projected into the image,
-// its centre and its four corners; where all nine pixels around each of the five lie farther away
-// than the cell by the margin, the cell is doubted, and after clear_frames such frames in a row it
-// is cleared: it falls back to bounded. Cells measured in this frame (stamp now_ms) are passed
-// over.
+// its centre and, where they are more than a pixel from it, its corners; where all nine pixels
+// around each of them lie farther away than the cell by the margin, the cell is doubted, and after
+// clear_frames such frames in a row it is cleared: it falls back to bounded. Cells measured in this
+// frame (stamp now_ms) are passed over.
 void clear_seen_through(const Sight& sight, ControlMap& map, IntegrationReport& report);
 
 // Rays of every ceiling_pixel_stride-th pixel and row, offset by `phase`.

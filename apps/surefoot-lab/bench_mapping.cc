@@ -1,0 +1,237 @@
+#include "apps/surefoot-lab/bench_mapping.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "apps/common/config_root.h"
+#include "core/autonomy/map_task.h"
+#include "core/base/random.h"
+#include "core/mapping/line_of_sight.h"
+#include "core/mapping/mapper.h"
+#include "core/mapping/traversability_filter.h"
+
+namespace surefoot::apps {
+namespace {
+
+using mapping::kWindowSide;
+using Filter = mapping::TraversabilityFilter<kWindowSide>;
+constexpr int kRounds = 400;
+
+template <class Work>
+double median_us(int rounds, Work&& work) {
+  std::vector<double> times;
+  for (int i = 0; i < rounds; ++i) times.push_back(work());
+  const auto middle = times.begin() + rounds / 2;
+  std::nth_element(times.begin(), middle, times.end());
+  return *middle;
+}
+
+template <class Work>
+double time_us(Work&& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin)
+      .count();
+}
+
+void print(const char* what, double us, const std::string& note) {
+  std::fputs(fmt::format("  {:<58} {:>8.1f} us  {}\n", what, us, note).c_str(), stdout);
+}
+
+// Blocks of up to 0.3 m with noise of some millimetres.
+cv::Mat heights() {
+  Random random(1);
+  cv::Mat grid(kWindowSide, kWindowSide, CV_32F, cv::Scalar(0));
+  for (int block = 0; block < 60; ++block) {
+    const int x = static_cast<int>(random.below(kWindowSide - 14));
+    const int y = static_cast<int>(random.below(kWindowSide - 14));
+    grid(cv::Rect(x, y, 14, 14)).setTo(random.uniform(0, 0.3));
+  }
+  for (int i = 0; i < kWindowSide * kWindowSide; ++i) {
+    float& height = grid.at<float>(i / kWindowSide, i % kWindowSide);
+    height = mapping::on_filter_grid(height + 0.002F * static_cast<float>(random.normal()));
+  }
+  return grid;
+}
+
+// The paper's filter and traversability in OpenCV: opening, gradient map, three thresholds.
+class PaperInOpenCv {
+ public:
+  void run(const cv::Mat& in, const mapping::TraversabilityLimits& limits, double cell_m) {
+    cv::morphologyEx(in, opened, cv::MORPH_OPEN, kernel_);
+    cv::Sobel(opened, gx_, CV_32F, 1, 0);
+    cv::Sobel(opened, gy_, CV_32F, 0, 1);
+    cv::absdiff(gx_, cv::Scalar::all(0), gx_);
+    cv::absdiff(gy_, cv::Scalar::all(0), gy_);
+    cv::max(gx_, gy_, gradient);
+    classes_.create(in.size(), CV_8U);
+    classes_.setTo(1);
+    const double bounds[] = {8 * limits.max_slope * cell_m, 4 * limits.max_step_m,
+                             4 * limits.max_jump_m};
+    for (int i = 0; i < 3; ++i) {
+      cv::compare(gradient, cv::Scalar(bounds[i]), mask_, cv::CMP_GT);
+      classes_.setTo(2 + i, mask_);
+    }
+  }
+  cv::Mat opened;
+  cv::Mat gradient;
+
+ private:
+  cv::Mat kernel_ = cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5});
+  cv::Mat gx_, gy_, mask_, classes_;
+};
+
+bool same(const Filter& filter, const PaperInOpenCv& paper) {
+  for (int y = 0; y < kWindowSide; ++y) {
+    for (int x = 0; x < kWindowSide; ++x) {
+      if (filter.opened().row(y)[x] != paper.opened.at<float>(y, x)) return false;
+      if (filter.gradient_map().row(y)[x] != paper.gradient.at<float>(y, x)) return false;
+    }
+  }
+  return true;
+}
+
+bool bench_filter(const mapping::TraversabilityLimits& limits, double cell_m) {
+  const cv::Mat in = heights();
+  cv::setNumThreads(1);
+  const auto filter = std::make_unique<Filter>();
+  filter->reset(limits, cell_m);
+  const auto set_all = [&] {
+    for (int y = 0; y < kWindowSide; ++y) {
+      for (int x = 0; x < kWindowSide; ++x) filter->set(x, y, in.at<float>(y, x));
+    }
+  };
+  const auto ours = [&] { filter->update({0, kWindowSide, 0, kWindowSide}); };
+  print("setting 100 x 100 heights", median_us(kRounds, [&] { return time_us(set_all); }), "");
+  PaperInOpenCv paper;
+  std::vector<double> theirs;
+  const double mine = median_us(kRounds, [&] {
+    theirs.push_back(time_us([&] { paper.run(in, limits, cell_m); }));
+    return time_us(ours);
+  });
+  std::nth_element(theirs.begin(), theirs.begin() + kRounds / 2, theirs.end());
+  print("filter and traversability, 100 x 100 cells, all changed", mine,
+        same(*filter, paper) ? "opening and gradient equal OpenCV's" : "DIFFERS from OpenCV");
+  print("OpenCV, one thread: opening, Sobel, maximum, thresholds", theirs[kRounds / 2], "");
+  return same(*filter, paper);
+}
+
+// A camera that looks straight down from `depth_m` on level ground, 160 x 128 pixels over `reach_m`
+// to either side, and a ghost half way in every cell when `ghosts`.
+class Downward {
+ public:
+  Downward(const mapping::MappingConfig& config, const mapping::DepthSensorModel& sensor,
+           const mapping::TraversabilityLimits& limits)
+      : config_(config), sensor_(sensor), limits_(limits) {
+    config_.max_height_above_body_m = 3.0;
+    X_OC_.rotation.matrix << 0, -1, 0, -1, 0, 0, 0, 0, -1;
+  }
+
+  void look(double depth_m, double reach_m) {
+    if (!ok(mapper_->configure(config_, sensor_, limits_))) return;
+    X_OC_.origin.m = Vector3(0.0, 0.0, depth_m);
+    self_.X_OB.origin.m = X_OC_.origin.m;
+    hal::PinholeIntrinsics& lens = frame_->intrinsics;
+    lens = {160, 128, 80 * depth_m / reach_m, 64 * depth_m / reach_m, 79.5, 63.5};
+    const auto mm = static_cast<std::uint16_t>(depth_m * 1000.0);
+    for (std::size_t i = 0; i < frame_->pixel_count(); ++i) {
+      frame_->depth[i] = static_cast<std::uint16_t>(mm + (i + i / 160) % 2);
+    }
+  }
+  double prepare_us() {
+    return time_us([&] { mapping::prepare(*frame_, config_, sensor_, *image_); });
+  }
+  double integrate_us() {
+    frame_->stamp = frame_->stamp + milliseconds(33);
+    return time_us([&] { (void)mapper_->integrate(*frame_, X_OC_, self_, &report_); });
+  }
+  // Clearing and ceilings of one frame over a map whose cells all hold a ghost.
+  double sight_us(double ghost_m, bool clear, bool ceilings) {
+    mapping::IntegrationReport report;
+    map_->reset({0, 0});
+    for (std::int32_t y = -200; y < 200; ++y) {
+      for (std::int32_t x = -200; x < 200; ++x) {
+        mapping::MapCell& cell = *map_->find({x, y});
+        if (ghost_m <= 0) continue;
+        cell.height_m = static_cast<float>(ghost_m);
+        cell.state = mapping::CellState::kMeasured;
+        cell.misses = (config_.clear_frames - 1u) & 0xFu;
+      }
+    }
+    const mapping::Sight sight{*image_, X_OC_, config_, sensor_, 1000};
+    const double us = time_us([&] {
+      if (clear) mapping::clear_seen_through(sight, *map_, report);
+      if (ceilings) mapping::lower_ceilings(sight, 0, *map_, report);
+    });
+    report_ = report;
+    return us;
+  }
+  void every_ray() { config_.ceiling_pixel_stride = 1; }
+  const mapping::IntegrationReport& report() const { return report_; }
+
+ private:
+  mapping::MappingConfig config_;
+  mapping::DepthSensorModel sensor_;
+  mapping::TraversabilityLimits limits_;
+  mapping::CameraPose X_OC_;
+  mapping::SelfModel self_;
+  mapping::IntegrationReport report_;
+  std::unique_ptr<mapping::Mapper> mapper_ = std::make_unique<mapping::Mapper>();
+  std::unique_ptr<mapping::ControlMap> map_ = std::make_unique<mapping::ControlMap>();
+  std::unique_ptr<mapping::DepthImage> image_ = std::make_unique<mapping::DepthImage>();
+  std::unique_ptr<hal::DepthFrame> frame_ = std::make_unique<hal::DepthFrame>();
+};
+
+void bench_insertion(Downward& camera) {
+  camera.look(1.0, 0.75);
+  const double prepare = median_us(kRounds, [&] { return camera.prepare_us(); });
+  const double total = median_us(kRounds, [&] { return camera.integrate_us(); });
+  const std::uint32_t points = camera.report().points;
+  const std::uint32_t cells = camera.report().cells_hit;
+  const double sight = median_us(kRounds, [&] { return camera.sight_us(0, true, true); });
+  const double insertion = total - prepare - sight;
+  print("whole frame of 160 x 128 pixels over 100 x 100 cells", total,
+        fmt::format("{} points, {} cells", points, cells));
+  print("  thinning and mixed pixels", prepare, "");
+  print("  points into the map (the rest of the frame)", insertion,
+        fmt::format("{:.1f} million points per second", points / insertion));
+}
+
+void bench_clearing(Downward& camera) {
+  camera.look(2.4, 3.0);
+  (void)camera.prepare_us();
+  const double clear = median_us(40, [&] { return camera.sight_us(0.2, true, false); });
+  print("clearing 400 x 400 cells with 20,480 rays", clear,
+        fmt::format("{} cells cleared", camera.report().cells_cleared));
+  camera.every_ray();
+  const double ceilings = median_us(40, [&] { return camera.sight_us(0, false, true); });
+  print("ceilings of 400 x 400 unseen cells by 20,480 rays", ceilings,
+        fmt::format("{} bounds", camera.report().ceilings));
+}
+
+}  // namespace
+
+int bench_mapping() {
+  ConfigIssues issues;
+  const Config config =
+      load_config({"mini_cheetah", "flat", "cross", "sim", 1, {}}, config_folder(), issues);
+  if (!issues.empty()) return 3;
+  const mapping::MappingConfig& map = config.autonomy.mapping;
+  const mapping::TraversabilityLimits limits =
+      mapping::traversability_limits(map, config.robot, config.autonomy.control.body.height_m,
+                                     config.autonomy.control.swing.clearance_m);
+  std::fputs("mapping: medians, one thread\n", stdout);
+  const bool equal = bench_filter(limits, map.cell_size_m);
+  Downward camera(map, mapping::sensor_model(config.robot.depth_camera), limits);
+  bench_insertion(camera);
+  bench_clearing(camera);
+  return equal ? 0 : 3;
+}
+
+}  // namespace surefoot::apps
