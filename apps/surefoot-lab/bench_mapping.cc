@@ -123,9 +123,11 @@ bool bench_filter(const mapping::TraversabilityLimits& limits, double cell_m) {
 }
 
 // A camera that looks straight down from `depth_m` on level ground, 160 x 128 pixels over `reach_m`
-// to either side, and a ghost half way in every cell when `ghosts`.
+// to either side.
 class Downward {
  public:
+  static constexpr std::uint32_t kNow_ms = 1000;
+
   Downward(const mapping::MappingConfig& config, const mapping::DepthSensorModel& sensor,
            const mapping::TraversabilityLimits& limits)
       : config_(config), sensor_(sensor), limits_(limits) {
@@ -151,20 +153,22 @@ class Downward {
     frame_->stamp = frame_->stamp + milliseconds(33);
     return time_us([&] { (void)mapper_->integrate(*frame_, X_OC_, self_, &report_); });
   }
-  // Clearing and ceilings of one frame over a map whose cells all hold a ghost.
-  double sight_us(double ghost_m, bool clear, bool ceilings) {
+  // Clearing and ceilings of one frame of stamp kNow_ms over a map whose middle cells all hold
+  // `height_m`, measured at `stamp_ms`, and are one frame from being cleared.
+  double sight_us(std::int32_t half_side, double height_m, std::uint32_t stamp_ms, bool clear,
+                  bool ceilings) {
     mapping::IntegrationReport report;
     map_->reset({0, 0});
-    for (std::int32_t y = -200; y < 200; ++y) {
-      for (std::int32_t x = -200; x < 200; ++x) {
+    for (std::int32_t y = -half_side; y < half_side; ++y) {
+      for (std::int32_t x = -half_side; x < half_side; ++x) {
         mapping::MapCell& cell = *map_->find({x, y});
-        if (ghost_m <= 0) continue;
-        cell.height_m = static_cast<float>(ghost_m);
+        cell.height_m = static_cast<float>(height_m);
         cell.state = mapping::CellState::kMeasured;
+        cell.stamp_ms = stamp_ms;
         cell.misses = (config_.clear_frames - 1u) & 0xFu;
       }
     }
-    const mapping::Sight sight{*image_, X_OC_, config_, sensor_, 1000};
+    const mapping::Sight sight{*image_, X_OC_, config_, sensor_, kNow_ms};
     const double us = time_us([&] {
       if (clear) mapping::clear_seen_through(sight, *map_, report);
       if (ceilings) mapping::lower_ceilings(sight, 0, *map_, report);
@@ -194,7 +198,8 @@ void bench_insertion(Downward& camera) {
   const double total = median_us(kRounds, [&] { return camera.integrate_us(); });
   const std::uint32_t points = camera.report().points;
   const std::uint32_t cells = camera.report().cells_hit;
-  const double sight = median_us(kRounds, [&] { return camera.sight_us(0, true, true); });
+  const double sight =
+      median_us(kRounds, [&] { return camera.sight_us(50, 0.0, Downward::kNow_ms, true, true); });
   const double insertion = total - prepare - sight;
   print("whole frame of 160 x 128 pixels over 100 x 100 cells", total,
         fmt::format("{} points, {} cells", points, cells));
@@ -206,11 +211,11 @@ void bench_insertion(Downward& camera) {
 void bench_clearing(Downward& camera) {
   camera.look(2.4, 3.0);
   (void)camera.prepare_us();
-  const double clear = median_us(40, [&] { return camera.sight_us(0.2, true, false); });
+  const double clear = median_us(40, [&] { return camera.sight_us(200, 0.2, 1, true, false); });
   print("clearing 400 x 400 cells with 20,480 rays", clear,
         fmt::format("{} cells cleared", camera.report().cells_cleared));
   camera.every_ray();
-  const double ceilings = median_us(40, [&] { return camera.sight_us(0, false, true); });
+  const double ceilings = median_us(40, [&] { return camera.sight_us(0, 0.0, 1, false, true); });
   print("ceilings of 400 x 400 unseen cells by 20,480 rays", ceilings,
         fmt::format("{} bounds", camera.report().ceilings));
 }
