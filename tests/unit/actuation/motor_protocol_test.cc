@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.h"
+#include "tests/support/samples.h"
 
 namespace surefoot::actuation {
 namespace {
@@ -199,7 +200,7 @@ TEST(MotorProtocol, NoRandomCommandAliasesASpecialFrame) {
     const double x = random.uniform(-2.0 * range, 3.0 * range);
     return x;
   };
-  for (int i = 0; i < 10'000'000; ++i) {
+  for (int i = 0; i < tests::samples(10'000'000, 500'000); ++i) {
     DriveCommand command;
     command.position_rad = draw(12.5);
     command.velocity_rad_s = draw(45.0);

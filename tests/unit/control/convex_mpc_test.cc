@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "core/math/elementary.h"
+#include "tests/support/mpc_oracle.h"
 #include "tests/support/mpc_problems.h"
-#include "tests/unit/control/mpc_oracle.h"
+#include "tests/support/samples.h"
 
 namespace surefoot::control {
 namespace {
@@ -19,6 +20,7 @@ using tests::kMpcGaits;
 using tests::mpc_config;
 using tests::MpcGait;
 using tests::random_mpc_problem;
+using tests::samples;
 
 // By how much a plan leaves the pyramids; feet that do not stand must have exactly nothing.
 double violation_N(const MpcProblem& problem, const MpcSolution& solution, const MpcConfig& c) {
@@ -83,7 +85,7 @@ TEST_P(EveryGait, AgreesWithAnExactSolver) {
   const MpcGait& gait = kMpcGaits[GetParam()];
   const MpcConfig config = mpc_config();
   for (const double disturbed : {0.0, 1.0}) {
-    const Comparison result = compare(gait, config, disturbed, 715, 100 + GetParam());
+    const Comparison result = compare(gait, config, disturbed, samples(715, 4), 100 + GetParam());
     std::printf("%-9s %s: worst error %.4f N, residual %.4f N\n", gait.name,
                 disturbed > 0 ? "disturbed" : "nominal  ", result.worst_N, result.worst_residual_N);
     EXPECT_LT(result.worst_optimality, 1e-8) << "the oracle is not exact";
@@ -108,7 +110,7 @@ TEST(ConvexMpc, AgreesForOtherStepsFrictionAndEffort) {
     config.friction = variant.friction;
     config.effort_weight = variant.effort;
     for (const MpcGait& gait : kMpcGaits) {
-      const Comparison result = compare(gait, config, 1.0, 20, 7);
+      const Comparison result = compare(gait, config, 1.0, samples(20, 1), 7);
       EXPECT_LT(result.worst_N, 1.0)
           << gait.name << " " << variant.step_s << " " << variant.friction << " " << variant.effort;
       EXPECT_LE(result.worst_violation_N, 1e-12);
@@ -124,7 +126,7 @@ TEST(ConvexMpc, NoFeasiblePlanIsCheaper) {
     const MpcProblem problem = random_mpc_problem(random, gait, config, 1.0);
     const MpcSolution solution = mpc->solve(problem);
     const double cost = tests::mpc_cost(problem, config, solution.force_O_N);
-    for (int trial = 0; trial < 200; ++trial) {
+    for (int trial = 0; trial < samples(200, 4); ++trial) {
       MpcSolution other = solution;
       for (std::size_t k = 0; k < kMpcHorizon; ++k) {
         for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
@@ -257,7 +259,7 @@ TEST(ConvexMpc, AnyContactPlanIsAnswered) {
   const MpcConfig config = mpc_config();
   const auto mpc = make(config);
   Random random(51);
-  for (int trial = 0; trial < 2000; ++trial) {
+  for (int trial = 0; trial < samples(2000, 100); ++trial) {
     MpcProblem problem = random_mpc_problem(random, kMpcGaits[6], config, 1.0);
     const std::uint32_t kind = random.below(3);
     for (std::size_t k = 0; k < kMpcHorizon; ++k) {
@@ -278,7 +280,7 @@ TEST(ConvexMpc, IsFeasibleFarFromAnythingSensible) {
   const MpcConfig config = mpc_config();
   const auto mpc = make(config);
   Random random(61);
-  for (int trial = 0; trial < 2000; ++trial) {
+  for (int trial = 0; trial < samples(2000, 100); ++trial) {
     const MpcGait& gait = kMpcGaits[static_cast<std::size_t>(trial) % kMpcGaits.size()];
     MpcProblem problem = random_mpc_problem(random, gait, config, 10.0);
     problem.steps_since_last = random.below(12);
@@ -295,9 +297,9 @@ TEST(ConvexMpc, TheLastSolutionIsTheStart) {
   Random random(71);
   double warm_sum = 0;
   double cold_sum = 0;
-  for (std::size_t trial = 0; trial < 700; ++trial) {
-    MpcProblem problem =
-        random_mpc_problem(random, kMpcGaits[trial % kMpcGaits.size()], config, 1.0);
+  for (int trial = 0; trial < samples(700, 70); ++trial) {
+    const MpcGait& gait = kMpcGaits[static_cast<std::size_t>(trial) % kMpcGaits.size()];
+    MpcProblem problem = random_mpc_problem(random, gait, config, 1.0);
     problem.steps_since_last = kMpcHorizon;
     cold_sum += mpc->solve(problem).residual_N;
     problem.steps_since_last = 0;

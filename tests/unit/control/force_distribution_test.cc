@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "tests/support/samples.h"
 
 namespace surefoot::control {
 namespace {
@@ -133,7 +134,7 @@ TEST(ForceDistribution, AgreesWithAnExactSolver) {
   ForceConfig c = config();
   Random random(11);
   double worst_N = 0;
-  for (int trial = 0; trial < 60; ++trial) {
+  for (int trial = 0; trial < tests::samples(60, 4); ++trial) {
     const ForceProblem problem = random_problem(random);
     ForceDistribution distribution;
     distribution.reset(c);

@@ -4,10 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/samples.h"
 #include "tests/unit/mapping/scene.h"
 
 namespace surefoot::mapping::test {
 namespace {
+
+using tests::samples;
 
 constexpr double kSize = 0.015;
 
@@ -123,14 +126,15 @@ std::uint32_t cleared_in_static_scene(const Scene& scene, double camera_z, doubl
 }
 
 TEST(StaticScene, NothingIsEverClearedAtGrazingAngles) {
-  EXPECT_EQ(cleared_in_static_scene(staircase(), 0.34, 0.7, 200, 0), 0u);
-  EXPECT_EQ(cleared_in_static_scene(staircase(), 0.20, 0.25, 1000, 0), 0u);  // 14 degrees
-  EXPECT_EQ(cleared_in_static_scene(Scene{}, 0.12, 0.15, 200, 0), 0u);
+  EXPECT_EQ(cleared_in_static_scene(staircase(), 0.34, 0.7, samples(200, 20), 0), 0u);
+  EXPECT_EQ(cleared_in_static_scene(staircase(), 0.20, 0.25, samples(1000, 60), 0),
+            0u);  // 14 degrees
+  EXPECT_EQ(cleared_in_static_scene(Scene{}, 0.12, 0.15, samples(200, 20), 0), 0u);
 }
 
 TEST(StaticScene, NothingIsEverClearedWhileTheBodySways) {
-  EXPECT_EQ(cleared_in_static_scene(staircase(), 0.34, 0.7, 400, 0.02), 0u);
-  EXPECT_EQ(cleared_in_static_scene(staircase(), 0.20, 0.25, 400, 0.02), 0u);
+  EXPECT_EQ(cleared_in_static_scene(staircase(), 0.34, 0.7, samples(400, 50), 0.02), 0u);
+  EXPECT_EQ(cleared_in_static_scene(staircase(), 0.20, 0.25, samples(400, 50), 0.02), 0u);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/samples.h"
 #include "tests/unit/mapping/scene.h"
 
 namespace surefoot::mapping::test {
@@ -228,7 +229,7 @@ TEST_F(Standing, NoiseConvergesWithoutDrift) {
   const Vector2 high(1.2, 0.15);
   for (int frame = 0; frame < 100; ++frame) see(frame);
   const MapError early = map_error(*mapper_, scene_, low, high);
-  for (int frame = 100; frame < 800; ++frame) see(frame);
+  for (int frame = 100; frame < tests::samples(800, 150); ++frame) see(frame);
   const MapError late = map_error(*mapper_, scene_, low, high);
   EXPECT_GT(early.cells, 700);
   EXPECT_LT(std::fabs(early.mean), 1e-3);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/samples.h"
 #include "tests/unit/mapping/scene.h"
 
 namespace surefoot::mapping::test {
@@ -50,7 +51,7 @@ TEST(SelfFilter, NoLegCellsInATrot) {
   auto frame = std::make_unique<hal::DepthFrame>();
   Random random(8);
   std::uint32_t self_points = 0;
-  for (int i = 0; i < 150; ++i) {
+  for (int i = 0; i < tests::samples(150, 60); ++i) {
     const double x = 0.0167 * i;
     Scene scene;
     SelfModel self = bodiless(x, 0, 0.29);

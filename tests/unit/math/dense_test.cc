@@ -5,12 +5,13 @@
 #include <cstdio>
 
 #include "core/math/elementary.h"
+#include "tests/support/samples.h"
 #include "tests/unit/math/ulp.h"
 
 namespace surefoot::math {
 namespace {
 
-constexpr int kSamples = SUREFOOT_DENSE_SAMPLES;
+constexpr int kSamples = tests::samples(2'000'000, 20'000);
 
 template <class Function, class Oracle, class Argument>
 void expect_within(const char* name, double bound_ulp, Function function, Oracle oracle,

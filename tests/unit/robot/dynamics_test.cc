@@ -11,6 +11,7 @@
 #include "core/base/random.h"
 #include "core/geometry/rotations.h"
 #include "core/robot/kinematics.h"
+#include "tests/support/samples.h"
 #include "tests/unit/robot/random_robot.h"
 
 namespace surefoot::robot {
@@ -365,7 +366,7 @@ TEST(Dynamics, FlightKeepsMomentumAndEnergy) {
   Dynamics dynamics;
   dynamics.reset(model);
   Random random(8);
-  for (int trial = 0; trial < 10; ++trial) {
+  for (int trial = 0; trial < tests::samples(10, 3); ++trial) {
     Flight flight{dynamics, random_place(random), random_vector(random, 4.0), {}};
     for (int i = 0; i < 12; ++i) flight.torque[i] = random.uniform(-2, 2);
     const Sums start = sums(model, flight.place, flight.nu);

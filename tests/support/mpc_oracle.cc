@@ -1,4 +1,4 @@
-#include "tests/unit/control/mpc_oracle.h"
+#include "tests/support/mpc_oracle.h"
 
 #include <Eigen/Dense>
 
