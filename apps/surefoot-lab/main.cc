@@ -9,6 +9,7 @@
 #include "apps/surefoot-lab/bench.h"
 #include "apps/surefoot-lab/campaign.h"
 #include "apps/surefoot-lab/export.h"
+#include "apps/surefoot-lab/jump/motion_command.h"
 
 namespace surefoot::apps {
 namespace {
@@ -20,6 +21,7 @@ struct Arguments {
   std::string to;
   std::string bench_name;
   std::filesystem::path out;
+  MotionOptions motion;
 };
 
 CLI::App* add_campaign(CLI::App& app, Arguments& arguments) {
@@ -68,6 +70,11 @@ int dispatch(int argc, char** argv, Stack& stack) {
       ->required()
       ->check(CLI::IsMember({"candump", "csv", "html"}));
   export_command->add_option("--out", arguments.out, "folder; the record's own when left out");
+  CLI::App* motion_command = app.add_subcommand("motion", "optimises a jump, writes its file");
+  motion_command->add_option("NAME", arguments.motion.name, "of the jump")->required();
+  motion_command->add_option("--robot", arguments.motion.robot, "name or file")->required();
+  motion_command->add_option("--out", arguments.motion.out, "file; config/motions/NAME.yaml");
+  motion_command->add_flag("--verbose", arguments.motion.verbose, "the solver's iterations");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -75,6 +82,7 @@ int dispatch(int argc, char** argv, Stack& stack) {
   }
   if (campaign_command->parsed()) return run_campaign(arguments);
   if (bench_command->parsed()) return bench(arguments.bench_name, stack);
+  if (motion_command->parsed()) return make_motion_file(arguments.motion);
   return export_command->parsed()
              ? export_record(arguments.input, arguments.to, arguments.out, stack)
              : 2;
