@@ -13,6 +13,7 @@
 #include "apps/common/figures.h"
 #include "apps/common/run.h"
 #include "apps/surefoot-lab/bench_mapping.h"
+#include "apps/surefoot-lab/bench_mpc.h"
 
 namespace surefoot::apps {
 namespace {
@@ -64,15 +65,16 @@ int bench_pictures() {
 }  // namespace
 
 int bench(const std::string& name, Stack& stack) {
-  if (!name.empty() && name != "run" && name != "pictures" && name != "mapping") {
+  if (!name.empty() && name != "run" && name != "pictures" && name != "mapping" && name != "mpc") {
     std::fputs(
-        fmt::format("bench: '{}' is unknown; there are: run pictures mapping\n", name).c_str(),
+        fmt::format("bench: '{}' is unknown; there are: run pictures mapping mpc\n", name).c_str(),
         stderr);
     return 2;
   }
   int worst = 0;
   if (name.empty() || name == "pictures") bench_pictures();
   if (name.empty() || name == "mapping") worst = bench_mapping();
+  if (name.empty() || name == "mpc") worst = std::max(worst, bench_mpc());
   if (name.empty() || name == "run") worst = std::max(worst, bench_run(stack));
   return worst;
 }

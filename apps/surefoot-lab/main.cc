@@ -62,7 +62,7 @@ int dispatch(int argc, char** argv, Stack& stack) {
   app.set_version_flag("--version", version_text());
   Arguments arguments;
   CLI::App* campaign_command = add_campaign(app, arguments);
-  CLI::App* bench_command = app.add_subcommand("bench", "benchmarks: run, pictures, mapping");
+  CLI::App* bench_command = app.add_subcommand("bench", "benchmarks: run, pictures, mapping, mpc");
   bench_command->add_option("NAME", arguments.bench_name, "one of them; all when left out");
   CLI::App* export_command = app.add_subcommand("export", "converts a record");
   export_command->add_option("RECORD", arguments.input, "record.mcap")->required();

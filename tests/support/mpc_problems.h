@@ -1,8 +1,11 @@
 // Problems for the predictive controller: every gait, nominal and disturbed.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "core/base/random.h"
 #include "core/control/convex_mpc.h"
@@ -104,6 +107,26 @@ inline control::MpcProblem random_mpc_problem(Random& random, const MpcGait& gai
     }
   }
   return problem;
+}
+
+// By how much a plan leaves the pyramids; feet that do not stand must have exactly nothing.
+inline double violation_N(const control::MpcProblem& problem, const control::MpcSolution& solution,
+                          const control::MpcConfig& c) {
+  double worst = 0;
+  for (std::size_t k = 0; k < control::kMpcHorizon; ++k) {
+    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+      const Vector3& f = solution.force_O_N[k][leg];
+      if (!problem.stands[k][leg]) {
+        worst = std::max(worst, f == Vector3::Zero() ? 0.0 : f.norm() + 1.0);
+        continue;
+      }
+      if (!f.allFinite()) return std::numeric_limits<double>::infinity();
+      worst =
+          std::max({worst, std::fabs(f[0]) - c.friction * f[2], std::fabs(f[1]) - c.friction * f[2],
+                    c.min_normal_N - f[2], f[2] - c.max_normal_N});
+    }
+  }
+  return worst;
 }
 
 }  // namespace surefoot::tests

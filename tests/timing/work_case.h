@@ -32,6 +32,7 @@ apps::Config load(const std::vector<std::string>& sets);
 // Each ends with an entry whose name is null.
 extern const WorkEntry kControlCases[];
 extern const WorkEntry kModuleCases[];
+extern const WorkEntry kMpcCases[];
 extern const WorkEntry kMappingCases[];
 extern const WorkEntry kExecutiveCases[];
 extern const WorkEntry kDynamicsCases[];

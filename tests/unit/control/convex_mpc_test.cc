@@ -21,25 +21,7 @@ using tests::mpc_config;
 using tests::MpcGait;
 using tests::random_mpc_problem;
 using tests::samples;
-
-// By how much a plan leaves the pyramids; feet that do not stand must have exactly nothing.
-double violation_N(const MpcProblem& problem, const MpcSolution& solution, const MpcConfig& c) {
-  double worst = 0;
-  for (std::size_t k = 0; k < kMpcHorizon; ++k) {
-    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-      const Vector3& f = solution.force_O_N[k][leg];
-      if (!problem.stands[k][leg]) {
-        worst = std::max(worst, f == Vector3::Zero() ? 0.0 : f.norm() + 1.0);
-        continue;
-      }
-      if (!f.allFinite()) return std::numeric_limits<double>::infinity();
-      worst =
-          std::max({worst, std::fabs(f[0]) - c.friction * f[2], std::fabs(f[1]) - c.friction * f[2],
-                    c.min_normal_N - f[2], f[2] - c.max_normal_N});
-    }
-  }
-  return worst;
-}
+using tests::violation_N;
 
 std::unique_ptr<ConvexMpc> make(const MpcConfig& config) {
   auto mpc = std::make_unique<ConvexMpc>();
