@@ -13,6 +13,7 @@
 #include "sim_hal/robot/sim_can_port.h"
 #include "sim_hal/sensors/sim_depth_camera_port.h"
 #include "sim_hal/sensors/sim_imu_port.h"
+#include "sim_hal/sensors/sim_pose_port.h"
 #include "sim_hal/world/terrain.h"
 #include "sim_hal/world/terrain_index.h"
 
@@ -71,6 +72,9 @@ void check(const SimulatorConfig& config, const robot::RobotModel& robot) {
   if (config.depth.latency_s * robot.depth_camera.rate_Hz > SimDepthCameraPort::kQueue - 1) {
     throw SimulatorError("simulator: depth.latency_s is longer than the frame queue");
   }
+  if (config.tracking.latency_s * robot.tracking_camera.rate_Hz > SimPosePort::kQueue - 1) {
+    throw SimulatorError("simulator: tracking.latency_s is longer than the sample queue");
+  }
   for (std::size_t i = 0; i < robot::kJoints; ++i) {
     if (robot.wiring[i].bus >= hal::kMaxCanBuses) throw SimulatorError("robot: wiring.bus above 3");
     for (std::size_t k = 0; k < i; ++k) {
@@ -97,7 +101,9 @@ struct Simulator::Implementation final : hal::Clock {
         pushes(configuration.scenario.push, seed),
         can(robot_model, configuration.can, configuration.faults, seed),
         imu(robot_model.imu, configuration.imu, configuration.faults, seed),
-        camera(robot_model.depth_camera, configuration.depth, configuration.faults, index, seed) {
+        camera(robot_model.depth_camera, configuration.depth, configuration.faults, index, seed),
+        tracking(robot_model.tracking_camera, configuration.tracking, configuration.faults, seed,
+                 robot.trunk_position_m(), robot.trunk_rotation()) {
     dWorldSetContactMaxCorrectingVel(ode.id(), configuration.physics.max_correcting_velocity_m_s);
     mount_velocity_W = robot.trunk_point_velocity_W(imu.mount_B_m());
     exchange_can();
@@ -124,6 +130,7 @@ struct Simulator::Implementation final : hal::Clock {
   SimCanPort can;
   SimImuPort imu;
   SimDepthCameraPort camera;
+  SimPosePort tracking;
   Vector3 mount_velocity_W;
   Vector3 trunk_force_N = Vector3::Zero();
   std::array<double, robot::kJoints> torques_Nm{};
@@ -201,6 +208,9 @@ void Simulator::Implementation::advance() {
   track_slip();
   exchange_can();
   advance_imu();
+  if (robot.model().tracking_camera.rate_Hz > 0) {
+    tracking.advance(now, robot.trunk_position_m(), robot.trunk_rotation());
+  }
   camera.advance(now);
   if (camera.due(now)) expose();
 }
@@ -219,6 +229,8 @@ hal::Board Simulator::board() {
   board.can = &implementation_->can;
   board.imu = &implementation_->imu;
   board.depth_camera = &implementation_->camera;
+  const bool tracks = implementation_->robot.model().tracking_camera.rate_Hz > 0;
+  board.pose = tracks ? &implementation_->tracking : nullptr;
   return board;
 }
 
@@ -314,6 +326,8 @@ SimulatorCounters Simulator::counters() const {
   counters.depth_out_of_range = depth.out_of_range;
   counters.camera_exposures_lost = depth.exposures_lost;
   counters.imu_samples_lost = sim.imu.lost();
+  counters.pose_samples_lost = sim.tracking.pose_counters().lost;
+  counters.pose_jumps = sim.tracking.pose_counters().jumps;
   return counters;
 }
 

@@ -78,6 +78,8 @@ struct SimulatorCounters {
   std::uint64_t depth_out_of_range = 0;
   std::uint64_t camera_exposures_lost = 0;
   std::uint64_t imu_samples_lost = 0;
+  std::uint64_t pose_samples_lost = 0;
+  std::uint64_t pose_jumps = 0;
 };
 
 class Simulator {
@@ -89,7 +91,7 @@ class Simulator {
   Simulator(const Simulator&) = delete;
   Simulator& operator=(const Simulator&) = delete;
 
-  // clock, can, imu and depth_camera are set; the rest is null. clock->wait_until(t) steps the
+  // clock, can, imu, depth_camera and, where the robot has one, pose are set; the rest is null. clock->wait_until(t) steps the
   // physics until now() >= t. The ports live as long as the simulator.
   hal::Board board();
 

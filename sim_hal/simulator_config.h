@@ -67,6 +67,37 @@ struct DepthNoiseConfig {
   }
 };
 
+// White noise is per sample. The walks are random walks of what the camera takes for its pose; a jump
+// is what a relocalisation does to it.
+struct TrackingNoiseConfig {
+  double latency_s = 0;            // from exposure to delivery
+  double position_noise_m = 0;     // one sigma per axis
+  double attitude_noise_rad = 0;   // one sigma per axis
+  double position_walk_m_rts = 0;  // drift, one sigma per axis after a second
+  double yaw_walk_rad_rts = 0;
+  double jump_interval_s = 0;  // mean time between jumps; 0: none
+  double jump_m = 0;           // one sigma per axis
+  double jump_rad = 0;         // one sigma, yaw
+  double regain_s = 0;         // low confidence after start and outage
+  double regain_noise_factor = 1;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("latency_s", self.latency_s, {0.0, 0.2}, "from exposure to delivery");
+    visit.real("position_noise_m", self.position_noise_m, {0.0, 0.1}, "one sigma per axis");
+    visit.real("attitude_noise_rad", self.attitude_noise_rad, {0.0, 0.1}, "one sigma per axis");
+    visit.real("position_walk_m_rts", self.position_walk_m_rts, {0.0, 0.1},
+               "drift, one sigma per axis after a second");
+    visit.real("yaw_walk_rad_rts", self.yaw_walk_rad_rts, {0.0, 0.1}, "drift of yaw");
+    visit.real("jump_interval_s", self.jump_interval_s, {0.0, 1e6}, "mean time; 0: none");
+    visit.real("jump_m", self.jump_m, {0.0, 2.0}, "one sigma per axis");
+    visit.real("jump_rad", self.jump_rad, {0.0, 1.0}, "one sigma, yaw");
+    visit.real("regain_s", self.regain_s, {0.0, 60.0}, "low confidence after start and outage");
+    visit.real("regain_noise_factor", self.regain_noise_factor, {1.0, 100.0},
+               "on the noise while confidence is low");
+  }
+};
+
 struct CanConfig {
   double frame_time_s = 0.00012;    // one frame on the wire; commands and replies share the bus
   double reply_loss = 0;            // probability that a reply never arrives
@@ -94,6 +125,8 @@ struct FaultConfig {
   double camera_off_until_s = 0;
   double imu_off_from_s = 0;  // samples in [from, until) are lost
   double imu_off_until_s = 0;
+  double pose_off_from_s = 0;  // the tracking camera's samples in [from, until) are lost
+  double pose_off_until_s = 0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -103,6 +136,8 @@ struct FaultConfig {
     visit.real("camera_off_until_s", self.camera_off_until_s, {0.0, 1e6}, "camera lost until");
     visit.real("imu_off_from_s", self.imu_off_from_s, {0.0, 1e6}, "IMU lost from");
     visit.real("imu_off_until_s", self.imu_off_until_s, {0.0, 1e6}, "IMU lost until");
+    visit.real("pose_off_from_s", self.pose_off_from_s, {0.0, 1e6}, "tracking camera lost from");
+    visit.real("pose_off_until_s", self.pose_off_until_s, {0.0, 1e6}, "tracking camera lost until");
   }
 };
 
@@ -118,6 +153,7 @@ struct SimulatorConfig {
   PhysicsConfig physics;
   ImuNoiseConfig imu;
   DepthNoiseConfig depth;
+  TrackingNoiseConfig tracking;
   CanConfig can;
   FaultConfig faults;
   StartPose start;
@@ -128,6 +164,7 @@ struct SimulatorConfig {
     visit.group("physics", self.physics);
     visit.group("imu", self.imu);
     visit.group("depth", self.depth);
+    visit.group("tracking", self.tracking);
     visit.group("can", self.can);
     visit.group("faults", self.faults);
   }

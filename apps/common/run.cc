@@ -168,6 +168,7 @@ class Run {
     facts_.hash = executive.hash();
     facts_.samples_dropped = log_->dropped();
     facts_.counters = executive.counters();
+    facts_.tracking = stack_.autonomy().estimator().drift().counters();
   }
 
   TrueGround ground() const {

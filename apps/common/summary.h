@@ -34,6 +34,7 @@ struct RunFacts {
   std::uint64_t hash = 0;
   std::uint64_t samples_dropped = 0;
   runtime::ExecutiveCounters counters;
+  estimation::TrackingCounters tracking;
 };
 
 std::string hex16(std::uint64_t value);

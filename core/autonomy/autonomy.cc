@@ -65,6 +65,19 @@ void Autonomy::receive() {
   // Folded on the ground no foot bears load: the accelerometer alone would carry the trunk away.
   if (still) estimator_.place(Vector3::Zero());
   if (walking_ready_) history_.push(estimator_.state());
+  receive_poses();
+}
+
+void Autonomy::receive_poses() {
+  for (const hal::PoseSample& sample : inputs_->pose) {
+    const Result<PastPose> past = history_.at(sample.stamp);
+    if (!past.ok()) {
+      estimator_.count_pose_without_stamp();
+      continue;
+    }
+    // Refusals are counted by the estimator.
+    static_cast<void>(estimator_.observe_pose(sample, {past.value().p_OB_m, past.value().q_OB}));
+  }
 }
 
 StopReason Autonomy::find_fault() {
@@ -149,6 +162,10 @@ void Autonomy::report(const estimation::RobotState& state) {
   report_legs(state);
   telemetry.depth_frames_mapped = map_.counters().frames_integrated;
   telemetry.map_digest = map_.window_digest();
+  const estimation::DriftEstimator& drift = estimator_.drift();
+  telemetry.tracking.position_error_O_m = to_array(drift.position_error_O_m());
+  telemetry.tracking.yaw_error_rad = drift.yaw_error_rad();
+  telemetry.tracking.samples = drift.counters();
   telemetry.replies_missed = bus_.counters().missed;
   telemetry.replies_invalid = bus_.counters().invalid;
 }

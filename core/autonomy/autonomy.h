@@ -45,6 +45,7 @@ class Autonomy {
 
  private:
   void receive();
+  void receive_poses();
   StopReason find_fault();
   void act(const estimation::RobotState& state);
   void begin_walking(const estimation::RobotState& state);

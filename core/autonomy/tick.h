@@ -8,6 +8,7 @@
 #include "core/base/fixed_vector.h"
 #include "core/base/time.h"
 #include "core/control/foothold_reason.h"
+#include "core/estimation/tracking.h"
 #include "core/robot/robot_model.h"
 #include "hal/api/can_port.h"
 #include "hal/api/depth_camera_port.h"
@@ -113,6 +114,20 @@ struct JointTelemetry {
   }
 };
 
+// The tracking camera against the estimate.
+struct TrackingTelemetry {
+  std::array<double, 3> position_error_O_m{};
+  double yaw_error_rad = 0;
+  estimation::TrackingCounters samples;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("position_error_O_m", self.position_error_O_m);
+    visit("yaw_error_rad", self.yaw_error_rad);
+    visit("samples", self.samples);
+  }
+};
+
 // The visible state of the autonomy. Enough to draw a run; hashed and compared by replay.
 struct Telemetry {
   MissionPhase phase = MissionPhase::kEnableDrives;
@@ -124,6 +139,7 @@ struct Telemetry {
   std::array<double, 3> velocity_command_B{};  // forward m/s, left m/s, yaw rad/s
   std::array<LegTelemetry, robot::kLegs> legs;
   std::array<JointTelemetry, robot::kJoints> joints;
+  TrackingTelemetry tracking;
   std::uint64_t depth_frames_mapped = 0;
   std::uint64_t map_digest = 0;  // hash of the published map window
   std::uint64_t replies_missed = 0;
@@ -140,6 +156,7 @@ struct Telemetry {
     visit("velocity_command_B", self.velocity_command_B);
     visit("legs", self.legs);
     visit("joints", self.joints);
+    visit("tracking", self.tracking);
     visit("depth_frames_mapped", self.depth_frames_mapped);
     visit("map_digest", self.map_digest);
     visit("replies_missed", self.replies_missed);

@@ -84,4 +84,12 @@ Status AttitudeEstimator::update(const hal::ImuSample& sample, bool lying_still)
   return Status::kOk;
 }
 
+void AttitudeEstimator::correct_yaw(double yaw_rad, double bias_rad_s) {
+  if (!initialised_) return;
+  const Vector3 up_B = R_OB_.row(2).transpose();
+  gyro_bias_B_rad_s_ += up_B * bias_rad_s;
+  q_OB_ = geometry::normalised(geometry::from_rotation_vector(Vector3(0, 0, yaw_rad)) * q_OB_);
+  R_OB_ = geometry::to_matrix(q_OB_);
+}
+
 }  // namespace surefoot::estimation

@@ -2,8 +2,8 @@
 //
 // The gyro is integrated as rotation vectors; the accelerometer's "up" pulls roll and pitch back
 // with a first-order gain and teaches the gyro bias with an integral gain (explicit complementary
-// filter, Mahony, Hamel, Pflimlin, IEEE TAC 2008, eq. 32). Yaw has no reference: it drifts with the
-// gyro. While the robot lies still the bias of all three axes is learned directly and gravity pulls
+// filter, Mahony, Hamel, Pflimlin, IEEE TAC 2008, eq. 32). Yaw has no reference here: it drifts with
+// the gyro unless correct_yaw() is told. While the robot lies still the bias of all three axes is learned directly and gravity pulls
 // harder.
 #pragma once
 
@@ -27,6 +27,9 @@ class AttitudeEstimator {
   // kStartSamples in a row that look like rest (gravity alone within max_gravity_error_m_s2), yaw =
   // 0. kInvalid: a value is not finite, or the stamp is not after the last one; nothing changed.
   Status update(const hal::ImuSample& sample, bool lying_still);
+
+  // Turns about O's up axis and shifts the gyro's bias about it.
+  void correct_yaw(double yaw_rad, double bias_rad_s);
 
   bool initialised() const { return initialised_; }
   const geometry::Quaternion& q_OB() const { return q_OB_; }

@@ -1,5 +1,6 @@
 #include "core/estimation/body_state.h"
 
+#include "core/geometry/rotations.h"
 #include "core/math/elementary.h"
 
 namespace surefoot::estimation {
@@ -42,6 +43,13 @@ void BodyStateEstimator::update(const Vector3& acceleration_O_m_s2,
       landmark_[leg] = false;
     }
   }
+}
+
+void BodyStateEstimator::move(const Vector3& shift_O_m, double yaw_rad) {
+  const Matrix3 turn = geometry::rotation_z(yaw_rad);
+  for (Vector3& foot : feet_O_m_) foot = p_O_m_ + shift_O_m + turn * (foot - p_O_m_);
+  p_O_m_ += shift_O_m;
+  v_O_m_s_ = turn * v_O_m_s_;
 }
 
 void BodyStateEstimator::correct_with_foot(std::size_t leg, const FootObservation& foot) {

@@ -76,16 +76,54 @@ struct BodyStateConfig {
   }
 };
 
+struct TrackingConfig {
+  int min_confidence = 0;           // samples below are not used
+  double jump_m = 0;                // a larger change of the error between two samples is the
+  double jump_rad = 0;              // camera's
+  double odometry_drift_m_s = 0;    // and grows by this over a gap: what the estimate without
+  double odometry_drift_rad_s = 0;  // the camera may drift
+  double position_gain_1_s = 0;     // share of the error that is given back
+  double max_horizontal_m_s = 0;    // at most
+  double max_vertical_m_s = 0;
+  double yaw_gain_1_s = 0;
+  double max_yaw_rate_rad_s = 0;
+  double yaw_bias_gain_1_s2 = 0;  // of the yaw error on the gyro's bias
+  double tilt_gain_1_s = 0;       // at which the tilt of S follows gravity
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.integer("min_confidence", self.min_confidence, {0, 3}, "samples below are not used");
+    visit.real("jump_m", self.jump_m, {0.001, 1.0},
+               "a larger change of the error between two samples is the camera's");
+    visit.real("jump_rad", self.jump_rad, {0.001, 1.0}, "the same of attitude");
+    visit.real("odometry_drift_m_s", self.odometry_drift_m_s, {0.0, 1.0},
+               "the estimate's drift without the camera");
+    visit.real("odometry_drift_rad_s", self.odometry_drift_rad_s, {0.0, 1.0}, "the same of yaw");
+    visit.real("position_gain_1_s", self.position_gain_1_s, {0.0, 10.0},
+               "share of the position error given back");
+    visit.real("max_horizontal_m_s", self.max_horizontal_m_s, {0.0, 1.0}, "at most");
+    visit.real("max_vertical_m_s", self.max_vertical_m_s, {0.0, 1.0}, "at most, up and down");
+    visit.real("yaw_gain_1_s", self.yaw_gain_1_s, {0.0, 10.0}, "share of the yaw error given back");
+    visit.real("max_yaw_rate_rad_s", self.max_yaw_rate_rad_s, {0.0, 1.0}, "at most");
+    visit.real("yaw_bias_gain_1_s2", self.yaw_bias_gain_1_s2, {0.0, 10.0},
+               "of the yaw error on the gyro's bias");
+    visit.real("tilt_gain_1_s", self.tilt_gain_1_s, {0.0, 10.0},
+               "at which the tilt of S follows gravity");
+  }
+};
+
 struct EstimationConfig {
   AttitudeConfig attitude;
   ContactConfig contact;
   BodyStateConfig body;
+  TrackingConfig tracking;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.group("attitude", self.attitude);
     visit.group("contact", self.contact);
     visit.group("body", self.body);
+    visit.group("tracking", self.tracking);
   }
 };
 

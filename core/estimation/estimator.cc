@@ -12,11 +12,13 @@ void Estimator::reset(const EstimationConfig& config, const robot::RobotModel& m
   attitude_.reset(config.attitude, model.imu);
   contact_.reset(config.contact, model, tick_s);
   body_.reset(config.body);
+  drift_.reset(config.tracking, model.tracking_camera);
   state_ = RobotState{};
 }
 
 void Estimator::place(const Vector3& p_OB_m) {
   body_.initialise(p_OB_m);
+  drift_.restart();
   state_.p_OB_m = p_OB_m;
   state_.v_OB_m_s.setZero();
 }
@@ -48,6 +50,15 @@ std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
     state_.feet[leg].p_O_m = state_.p_OB_m + observations_[leg].from_body_O_m;
   }
   return refused;
+}
+
+Status Estimator::observe_pose(const hal::PoseSample& sample, const PoseAtStamp& own) {
+  DriftCorrection correction;
+  const Status status = drift_.observe(sample, own, correction);
+  if (!ok(status)) return status;
+  attitude_.correct_yaw(correction.yaw_rad, correction.yaw_bias_rad_s);
+  body_.move(correction.shift_O_m, correction.yaw_rad);
+  return Status::kOk;
 }
 
 void Estimator::decide_contacts(const std::array<GaitPhase, robot::kLegs>& gait) {

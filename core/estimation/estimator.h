@@ -1,5 +1,5 @@
 // The state estimator: attitude, contacts, position and velocity, once per tick, from IMU samples
-// and joint states alone.
+// and joint states; a tracking camera, where there is one, takes the drift out slowly.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 #include "core/estimation/body_state.h"
 #include "core/estimation/config.h"
 #include "core/estimation/contact.h"
+#include "core/estimation/tracking.h"
 #include "core/geometry/frames.h"
 #include "core/robot/robot_model.h"
 
@@ -48,10 +49,18 @@ class Estimator {
                      const std::array<actuation::JointState, robot::kJoints>& joints,
                      const std::array<GaitPhase, robot::kLegs>& gait, bool lying_still);
 
-  // Declares where the trunk is: O's origin lies on the ground below it.
+  // A sample of the tracking camera and this estimator's own pose at its stamp; corrects what the
+  // next update() starts from. Status: DriftEstimator::observe().
+  Status observe_pose(const hal::PoseSample& sample, const PoseAtStamp& own);
+  // For a sample whose stamp has no pose.
+  void count_pose_without_stamp() { drift_.count_without_pose(); }
+
+  // Declares where the trunk is: O's origin lies on the ground below it. Whoever keeps poses of O
+  // forgets them now.
   void place(const Vector3& p_OB_m);
 
   const RobotState& state() const { return state_; }
+  const DriftEstimator& drift() const { return drift_; }
   bool ready() const { return attitude_.initialised(); }
   const Vector3& gyro_bias_B_rad_s() const { return attitude_.gyro_bias_B_rad_s(); }
 
@@ -64,6 +73,7 @@ class Estimator {
   AttitudeEstimator attitude_;
   ContactEstimator contact_;
   BodyStateEstimator body_;
+  DriftEstimator drift_;
   std::array<FootObservation, robot::kLegs> observations_;
   RobotState state_;
 };

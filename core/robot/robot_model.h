@@ -157,6 +157,18 @@ struct DepthCameraSpecification {
   }
 };
 
+// Reports its own pose: the frame T is its housing.
+struct TrackingCameraSpecification {
+  SensorMount mount;
+  double rate_Hz = 0;  // 0: the robot has none
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.group("mount", self.mount);
+    visit.real("rate_Hz", self.rate_Hz, {0.0, 1000.0}, "samples per second; 0: no such camera");
+  }
+};
+
 struct RobotModel {
   Link trunk;
   std::array<double, 3> trunk_size_m{};  // box around the trunk, for contact and self filtering
@@ -177,6 +189,7 @@ struct RobotModel {
   double drive_timeout_s = 0;  // drives go limp after this long without a command
   ImuSpecification imu;
   DepthCameraSpecification depth_camera;
+  TrackingCameraSpecification tracking_camera;
 
   double total_mass_kg() const {
     double rotors = 0;
@@ -205,6 +218,7 @@ struct RobotModel {
     visit.real("drive_timeout_s", self.drive_timeout_s, {0.001, 1.0}, "of the drive firmware");
     visit.group("imu", self.imu);
     visit.group("depth_camera", self.depth_camera);
+    visit.group("tracking_camera", self.tracking_camera);
   }
 };
 

@@ -104,6 +104,11 @@ TEST(Simulator, ImuPortKeepsTheRules) {
   EXPECT_EQ(joined(sensor_violations<ImuBench>(bench)), "");
 }
 
+TEST(Simulator, PosePortKeepsTheRules) {
+  SimSensorBench<PoseBench> bench(&hal::Board::pose, milliseconds(5), 64);
+  EXPECT_EQ(joined(sensor_violations<PoseBench>(bench)), "");
+}
+
 TEST(Simulator, DepthCameraPortKeepsTheRules) {
   SimSensorBench<DepthBench> bench(&hal::Board::depth_camera, milliseconds(34), 8);
   EXPECT_EQ(joined(sensor_violations<DepthBench>(bench)), "");

@@ -1,0 +1,108 @@
+// What a tracking camera says about the drift of O: slow corrections of position and yaw.
+//
+// The camera's trunk pose in O is the chain of paper 002, equation (1), X_OB = X_OS X_ST X_TB; it is
+// compared with the estimator's own pose at the sample's stamp. Of the difference a small share is
+// given back per sample, at a bounded rate: O stays continuous, its corrections are of the size of
+// the drift they remove, and the map in it does not tear (docs/decisions/007). The way is summed up
+// increment by increment, so that neither a turn of S nor a jump is multiplied by the distance.
+//
+// Increments that differ from the estimator's by more than a step of the body and the odometry's own
+// drift can explain are the camera's: relocalisation, restart, return from an outage. They move S and
+// leave O alone. Gravity is the estimator's: the tilt of S follows it slowly.
+//
+// Cost: a few 3 x 3 products per sample. Memory: < 1 kB.
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/status.h"
+#include "core/base/time.h"
+#include "core/estimation/config.h"
+#include "core/geometry/rotations.h"
+#include "core/math/linear.h"
+#include "core/robot/robot_model.h"
+#include "hal/api/pose_port.h"
+
+namespace surefoot::estimation {
+
+// The estimator's pose at a sample's stamp.
+struct PoseAtStamp {
+  Vector3 p_OB_m = Vector3::Zero();
+  geometry::Quaternion q_OB;
+};
+
+// To be added to the estimate now.
+struct DriftCorrection {
+  Vector3 shift_O_m = Vector3::Zero();
+  double yaw_rad = 0;
+  double yaw_bias_rad_s = 0;  // to the gyro's bias, about up
+};
+
+// Every sample that arrives ends in one of the first four.
+struct TrackingCounters {
+  std::uint64_t used = 0;
+  std::uint64_t refused = 0;         // not finite, not a rotation, out of order
+  std::uint64_t low_confidence = 0;  // below min_confidence
+  std::uint64_t without_pose = 0;    // stamp outside the pose history: all, until O has its place
+  std::uint64_t jumps = 0;           // of those used: S was moved
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("used", self.used);
+    visit("refused", self.refused);
+    visit("low_confidence", self.low_confidence);
+    visit("without_pose", self.without_pose);
+    visit("jumps", self.jumps);
+  }
+};
+
+class DriftEstimator {
+ public:
+  void reset(const TrackingConfig& config, const robot::TrackingCameraSpecification& camera);
+
+  // O was placed anew: the next sample finds S.
+  void restart() { anchored_ = false; }
+
+  // Takes the next sample. kInvalid: not finite, no unit quaternion, or not after the last one.
+  // kUnavailable: confidence too low. Nothing changed but the counters then, and `out` is zero.
+  Status observe(const hal::PoseSample& sample, const PoseAtStamp& own, DriftCorrection& out);
+  // For a sample whose stamp has no pose.
+  void count_without_pose() { ++counters_.without_pose; }
+
+  // Camera minus estimate at the last sample; zero before the first.
+  const Vector3& position_error_O_m() const { return error_O_m_; }
+  double yaw_error_rad() const { return rotation_error_O_rad_[2]; }
+  const TrackingCounters& counters() const { return counters_; }
+
+ private:
+  struct Observation {
+    Matrix3 R_SB;
+    Vector3 p_SB_m;
+    Matrix3 R_OB;  // own
+    Vector3 p_OB_m;
+  };
+
+  Status check(const hal::PoseSample& sample);
+  Observation chain(const hal::PoseSample& sample, const PoseAtStamp& own) const;
+  void anchor(const Observation& now);
+  void compare(const Observation& now, double span_s);
+  void average(const Observation& now);
+  DriftCorrection correction(double step_s) const;
+
+  TrackingConfig config_;
+  Matrix3 R_BT_ = Matrix3::Identity();
+  Vector3 p_BT_m_ = Vector3::Zero();
+  bool anchored_ = false;
+  int averaged_ = 0;  // samples since S was found or moved
+  TimeNs stamp_;
+  Matrix3 R_OS_ = Matrix3::Identity();
+  Vector3 p_OB_camera_m_ = Vector3::Zero();  // the camera's way, summed up in O
+  Vector3 p_SB_m_ = Vector3::Zero();         // of the sample before
+  Vector3 error_O_m_ = Vector3::Zero();
+  Vector3 rotation_error_O_rad_ = Vector3::Zero();
+  Vector3 kept_error_O_m_ = Vector3::Zero();  // what a move of S must not change
+  Vector3 kept_rotation_O_rad_ = Vector3::Zero();
+  TrackingCounters counters_;
+};
+
+}  // namespace surefoot::estimation

@@ -1,0 +1,233 @@
+// The drift estimator against a camera and an odometry whose errors are known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/base/random.h"
+#include "core/estimation/tracking.h"
+
+namespace surefoot::estimation {
+namespace {
+
+constexpr double kStep_s = 0.005;
+
+TrackingConfig tracking_config() {
+  TrackingConfig config;
+  config.min_confidence = 2;
+  config.jump_m = 0.015;
+  config.jump_rad = 0.012;
+  config.odometry_drift_m_s = 0.03;
+  config.odometry_drift_rad_s = 0.003;
+  config.position_gain_1_s = 1.0;
+  config.max_horizontal_m_s = 0.04;
+  config.max_vertical_m_s = 0.01;
+  config.yaw_gain_1_s = 0.5;
+  config.max_yaw_rate_rad_s = 0.01;
+  config.yaw_bias_gain_1_s2 = 0.01;
+  config.tilt_gain_1_s = 0.05;
+  return config;
+}
+
+robot::TrackingCameraSpecification camera() {
+  robot::TrackingCameraSpecification camera;
+  camera.mount.position_B_m = {0.26, 0.02, -0.01};
+  camera.mount.roll_pitch_yaw_rad = {0.05, 0.3, -0.1};
+  camera.rate_Hz = 1.0 / kStep_s;
+  return camera;
+}
+
+// Walks along a curve at 0.5 m/s; its odometry sees the way longer and the turn faster than they are.
+class Walk {
+ public:
+  double scale = 1.0;         // of the odometry
+  double yaw_bias_rad_s = 0;  // of the gyro, what has been learned subtracted
+  double noise_m = 0;
+  double noise_rad = 0;
+  Vector3 camera_shift_m = Vector3::Zero();  // of a camera that relocalises, in S
+  double camera_yaw_rad = 0;
+
+  Walk() { drift.reset(tracking_config(), camera()); }
+
+  // One step of body and odometry.
+  void move() {
+    stamp = stamp + milliseconds(5);
+    t_s += kStep_s;
+    const double omega = 0.2 * std::sin(0.3 * t_s);
+    yaw_rad += omega * kStep_s;
+    own_yaw_rad += (omega + yaw_bias_rad_s) * kStep_s;
+    const Vector3 step_B(0.5 * kStep_s, 0, 0.05 * std::cos(10 * t_s) * kStep_s);
+    p_m += geometry::rotation_z(yaw_rad) * step_B;
+    own_p_m += geometry::rotation_z(own_yaw_rad) * (step_B * scale);
+  }
+  hal::PoseSample sample() {
+    const robot::TrackingCameraSpecification spec = camera();
+    const auto& rpy = spec.mount.roll_pitch_yaw_rad;
+    const Matrix3 R_BT = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]);
+    const Vector3 p_BT(spec.mount.position_B_m[0], spec.mount.position_B_m[1],
+                       spec.mount.position_B_m[2]);
+    // S: anywhere and tilted.
+    const Matrix3 R_SW = geometry::from_roll_pitch_yaw(0.1, -0.2, 2.0);
+    const Matrix3 seen = geometry::rotation_z(camera_yaw_rad);
+    const Matrix3 R_WB = body(yaw_rad);
+    Vector3 p_ST = R_SW * (seen * (p_m + R_WB * p_BT)) + Vector3(3, -2, 1) + camera_shift_m;
+    Vector3 jitter;
+    for (int i = 0; i < 3; ++i) {
+      p_ST[i] += noise_m * random.normal();
+      jitter[i] = noise_rad * random.normal();
+    }
+    const geometry::Quaternion q =
+        geometry::to_quaternion(R_SW * seen * R_WB * R_BT) * geometry::from_rotation_vector(jitter);
+    hal::PoseSample sample;
+    sample.stamp = stamp;
+    sample.confidence = 3;
+    sample.p_ST_m = {p_ST[0], p_ST[1], p_ST[2]};
+    sample.q_ST_wxyz = {q.w, q.x, q.y, q.z};
+    return sample;
+  }
+  PoseAtStamp own() const { return {own_p_m, geometry::to_quaternion(body(own_yaw_rad))}; }
+  Status observe() {
+    const Status status = drift.observe(sample(), own(), correction);
+    own_p_m += correction.shift_O_m;
+    own_yaw_rad += correction.yaw_rad;
+    yaw_bias_rad_s -= correction.yaw_bias_rad_s;
+    return status;
+  }
+  void run(double seconds) {
+    for (int i = 0; i < static_cast<int>(seconds / kStep_s); ++i) {
+      move();
+      ASSERT_EQ(observe(), Status::kOk);
+      ASSERT_LE(correction.shift_O_m.head<2>().norm(), 0.04 * kStep_s + 1e-12);
+      ASSERT_LE(std::fabs(correction.shift_O_m[2]), 0.01 * kStep_s + 1e-12);
+      ASSERT_LE(std::fabs(correction.yaw_rad), 0.01 * kStep_s + 1e-12);
+    }
+  }
+  double error_m() const { return (own_p_m - p_m).norm(); }
+
+  DriftEstimator drift;
+  DriftCorrection correction;
+  TimeNs stamp;
+  double t_s = 0;
+  double yaw_rad = 0;
+  double own_yaw_rad = 0;
+  Vector3 p_m = Vector3(0, 0, 0.3);
+  Vector3 own_p_m = Vector3(0, 0, 0.3);
+  Random random{7};
+
+ private:
+  Matrix3 body(double heading_rad) const {
+    return geometry::from_roll_pitch_yaw(0.03 * std::sin(8 * t_s), 0.02 * std::cos(9 * t_s),
+                                         heading_rad);
+  }
+};
+
+TEST(Drift, AnExactOdometryIsLeftAloneWhateverMountAndStart) {
+  Walk walk;
+  walk.run(20.0);
+  EXPECT_LT(walk.error_m(), 1e-9);
+  EXPECT_LT(std::fabs(walk.own_yaw_rad - walk.yaw_rad), 1e-9);
+  EXPECT_EQ(walk.drift.counters().jumps, 0u);
+  EXPECT_EQ(walk.drift.counters().used, 4000u);
+}
+
+TEST(Drift, OfScaleAndYawIsTakenOutAndTheBiasLearned) {
+  Walk alone;
+  alone.scale = 1.04;
+  alone.yaw_bias_rad_s = 0.002;
+  for (int i = 0; i < 12000; ++i) alone.move();
+  ASSERT_GT(alone.error_m(), 1.0);  // what there is to take out
+
+  Walk walk;
+  walk.scale = 1.04;
+  walk.yaw_bias_rad_s = 0.002;
+  walk.noise_m = 0.001;
+  walk.noise_rad = 0.001;
+  walk.run(60.0);
+  EXPECT_LT(walk.error_m(), 0.05);
+  EXPECT_LT(std::fabs(walk.own_yaw_rad - walk.yaw_rad), 0.004);
+  EXPECT_LT(std::fabs(walk.yaw_bias_rad_s), 0.0004);
+  EXPECT_EQ(walk.drift.counters().jumps, 0u);
+}
+
+TEST(Drift, AJumpOfTheCameraMovesItsStartFrameAndNotTheBody) {
+  Walk walk;
+  walk.noise_m = 0.001;
+  walk.noise_rad = 0.001;
+  walk.run(10.0);
+  const double before_m = walk.error_m();
+  walk.camera_shift_m = Vector3(0.2, -0.1, 0.05);
+  walk.camera_yaw_rad = 0.1;
+  walk.run(10.0);
+  EXPECT_EQ(walk.drift.counters().jumps, 1u);
+  EXPECT_LT(std::fabs(walk.error_m() - before_m), 0.01);
+  EXPECT_LT(std::fabs(walk.own_yaw_rad - walk.yaw_rad), 0.004);
+}
+
+TEST(Drift, ASpikeOfOneSampleLeavesNothing) {
+  Walk walk;
+  walk.run(5.0);
+  walk.camera_shift_m = Vector3(0, 0, 0.5);
+  walk.run(kStep_s);
+  walk.camera_shift_m.setZero();
+  walk.run(5.0);
+  EXPECT_EQ(walk.drift.counters().jumps, 2u);
+  EXPECT_LT(walk.error_m(), 0.001);
+}
+
+TEST(Drift, OfAnOutageIsAbsorbedSlowlyWhenItCanBeTheLegs) {
+  Walk walk;
+  walk.scale = 1.03;
+  walk.run(10.0);
+  const double before_m = walk.error_m();
+  for (int i = 0; i < 2000; ++i) walk.move();
+  const double after_m = walk.error_m();
+  EXPECT_GT(after_m, before_m + 0.1);
+  walk.run(kStep_s);  // the bounds of a single correction are checked in here
+  EXPECT_LT(std::fabs(walk.error_m() - after_m), 0.001);
+  walk.run(15.0);
+  EXPECT_LT(walk.error_m(), before_m + 0.01);
+  EXPECT_EQ(walk.drift.counters().jumps, 0u);
+}
+
+TEST(Drift, AnOffsetThatTheLegsCannotHaveMadeMovesTheStartFrame) {
+  Walk walk;
+  walk.run(10.0);
+  for (int i = 0; i < 2000; ++i) walk.move();
+  walk.camera_shift_m = Vector3(4, 0, 0);  // the camera started anew
+  walk.camera_yaw_rad = 2.0;
+  walk.run(10.0);
+  EXPECT_EQ(walk.drift.counters().jumps, 1u);
+  EXPECT_LT(walk.error_m(), 0.001);
+}
+
+TEST(Drift, RefusesAndCountsWhatIsNoPose) {
+  Walk walk;
+  walk.run(1.0);
+  const Vector3 before = walk.drift.position_error_O_m();
+  const auto refuse = [&](const hal::PoseSample& sample, Status expected) {
+    DriftCorrection correction;
+    correction.yaw_rad = 1;
+    EXPECT_EQ(walk.drift.observe(sample, walk.own(), correction), expected);
+    EXPECT_EQ(correction.yaw_rad, 0.0);
+    EXPECT_EQ(correction.shift_O_m.norm(), 0.0);
+  };
+  refuse(walk.sample(), Status::kInvalid);  // the stamp of the last one
+  walk.move();
+  hal::PoseSample sample = walk.sample();
+  sample.p_ST_m[1] = std::numeric_limits<double>::quiet_NaN();
+  refuse(sample, Status::kInvalid);
+  sample = walk.sample();
+  sample.q_ST_wxyz = {0, 0, 0, 0};
+  refuse(sample, Status::kInvalid);
+  sample = walk.sample();
+  sample.confidence = 1;
+  refuse(sample, Status::kUnavailable);
+  EXPECT_EQ((walk.drift.position_error_O_m() - before).norm(), 0.0);
+  EXPECT_EQ(walk.drift.counters().refused, 3u);
+  EXPECT_EQ(walk.drift.counters().low_confidence, 1u);
+  EXPECT_EQ(walk.drift.counters().used, 200u);
+  EXPECT_EQ(walk.observe(), Status::kOk);
+}
+
+}  // namespace
+}  // namespace surefoot::estimation
