@@ -7,7 +7,7 @@ namespace {
 
 // Samples whose mean places S: white noise of one would stay in O as an error of heading.
 constexpr int kAveraged = 40;
-// A gap longer than this is an outage: its first sample corrects no more than any other.
+// A gap longer than this is an outage: the sample after it compares, those that follow correct.
 constexpr double kMaxStep_s = 0.05;
 constexpr double kUnitTolerance = 1e-3;  // of the squared norm of a unit quaternion
 
@@ -140,7 +140,7 @@ Status DriftEstimator::observe(const hal::PoseSample& sample, const PoseAtStamp&
   p_SB_m_ = now.p_SB_m;
   stamp_ = sample.stamp;
   if (averaged_ < kAveraged) average(now);
-  const double step_s = math::clamp(span_s, 0.0, kMaxStep_s);
+  const double step_s = span_s > kMaxStep_s ? 0.0 : span_s;
   Vector3 tilt_rad = rotation_error_O_rad_;
   tilt_rad[2] = 0.0;
   R_OS_ = turn(tilt_rad * (-config_.tilt_gain_1_s * step_s)) * R_OS_;

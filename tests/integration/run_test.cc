@@ -123,6 +123,24 @@ TEST(Run, ASilentDriveIsAFaultAndExitsWithThree) {
   EXPECT_EQ(replay.code, 0) << replay.out;
 }
 
+TEST(Run, WalksThroughAnOutageOfTheTrackingCameraAndReplays) {
+  const Scratch scratch;
+  const ProgramResult result = run_program(walk(
+      scratch, "out",
+      "--report off --set sim.faults.pose_off_from_s=5.5 --set sim.faults.pose_off_until_s=6.5 "
+      "--set sim.tracking.jump_interval_s=0.5 --set sim.tracking.jump_m=0.1"));
+  EXPECT_EQ(result.code, 0) << result.error;
+  const nlohmann::json counters = read_json(scratch.path("out") / "summary.json")["counters"];
+  EXPECT_GT(counters["pose_used"].get<int>(), 100);
+  EXPECT_GT(counters["pose_low_confidence"].get<int>(), 50);
+  EXPECT_GT(counters["pose_without_stamp"].get<int>(), 100);  // before O has its place
+  EXPECT_GT(counters["pose_jumps"].get<int>(), 2);
+  EXPECT_EQ(counters["pose_refused"], 0);
+  EXPECT_EQ(counters["pose_dropped"], 0);
+  const ProgramResult replay = run_program("surefoot replay " + scratch.text("out/record.mcap"));
+  EXPECT_EQ(replay.code, 0) << replay.out;
+}
+
 TEST(Run, TimeOutExitsWithOne) {
   const Scratch scratch;
   const ProgramResult result =

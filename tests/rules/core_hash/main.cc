@@ -19,6 +19,7 @@ constexpr Workload kWorkloads[] = {
     {"dynamics", surefoot::tests::hash_dynamics},
     {"actuation", surefoot::tests::hash_actuation},
     {"attitude", surefoot::tests::hash_attitude},
+    {"tracking", surefoot::tests::hash_tracking},
     {"mapping", surefoot::tests::hash_mapping},
     {"swing", surefoot::tests::hash_swing},
     {"force_distribution", surefoot::tests::hash_force_distribution},

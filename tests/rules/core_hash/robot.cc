@@ -4,6 +4,7 @@
 #include "core/actuation/motor_protocol.h"
 #include "core/base/random.h"
 #include "core/estimation/attitude.h"
+#include "core/estimation/tracking.h"
 #include "core/geometry/rotations.h"
 #include "core/robot/dynamics.h"
 #include "core/robot/kinematics.h"
@@ -132,6 +133,43 @@ void hash_attitude(Fnv64& hash) {
     mix(hash, estimator.gyro_bias_B_rad_s());
     mix(hash, estimator.specific_force_B_m_s2());
   }
+}
+
+void hash_tracking(Fnv64& hash) {
+  estimation::TrackingConfig config;
+  config.jump_m = 0.05;
+  config.jump_rad = 0.05;
+  config.position_gain_1_s = 1.0;
+  config.max_horizontal_m_s = 0.03;
+  config.max_vertical_m_s = 0.01;
+  config.yaw_gain_1_s = 0.5;
+  config.max_yaw_rate_rad_s = 0.01;
+  config.yaw_bias_gain_1_s2 = 0.01;
+  config.tilt_gain_1_s = 0.05;
+  robot::TrackingCameraSpecification camera;
+  camera.mount.position_B_m = {0.26, 0.01, -0.02};
+  camera.mount.roll_pitch_yaw_rad = {0.1, -0.2, 0.3};
+  estimation::DriftEstimator drift;
+  drift.reset(config, camera);
+  Random random(16);
+  for (int i = 0; i < 5000; ++i) {
+    hal::PoseSample sample;
+    sample.stamp = milliseconds(5 * (i + 1));
+    Vector3 turn;
+    for (std::size_t k = 0; k < 3; ++k) {
+      sample.p_ST_m[k] = 0.0025 * i + 0.01 * random.normal();
+      turn[static_cast<Eigen::Index>(k)] = 0.01 * random.normal();
+    }
+    const geometry::Quaternion q = geometry::from_rotation_vector(turn);
+    sample.q_ST_wxyz = {q.w, q.x, q.y, q.z};
+    estimation::PoseAtStamp own;
+    own.p_OB_m = Vector3(0.0025 * i, 0.002 * i, 0.3);
+    estimation::DriftCorrection correction;
+    hash.byte(static_cast<std::uint8_t>(drift.observe(sample, own, correction)));
+    mix(hash, correction.shift_O_m);
+    mix(hash, correction.yaw_rad);
+  }
+  hash.word(drift.counters().jumps, 8);
 }
 
 }  // namespace surefoot::tests

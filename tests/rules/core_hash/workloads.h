@@ -29,6 +29,7 @@ void hash_kinematics(Fnv64& hash);
 void hash_dynamics(Fnv64& hash);
 void hash_actuation(Fnv64& hash);
 void hash_attitude(Fnv64& hash);
+void hash_tracking(Fnv64& hash);
 void hash_mapping(Fnv64& hash);
 void hash_swing(Fnv64& hash);
 void hash_force_distribution(Fnv64& hash);

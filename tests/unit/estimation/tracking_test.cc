@@ -134,7 +134,7 @@ TEST(Drift, OfScaleAndYawIsTakenOutAndTheBiasLearned) {
   Walk alone;
   alone.scale = 1.04;
   alone.yaw_bias_rad_s = 0.002;
-  for (int i = 0; i < 12000; ++i) alone.move();
+  for (int i = 0; i < 24000; ++i) alone.move();
   ASSERT_GT(alone.error_m(), 1.0);  // what there is to take out
 
   Walk walk;
@@ -142,7 +142,7 @@ TEST(Drift, OfScaleAndYawIsTakenOutAndTheBiasLearned) {
   walk.yaw_bias_rad_s = 0.002;
   walk.noise_m = 0.001;
   walk.noise_rad = 0.001;
-  walk.run(60.0);
+  walk.run(120.0);
   EXPECT_LT(walk.error_m(), 0.05);
   EXPECT_LT(std::fabs(walk.own_yaw_rad - walk.yaw_rad), 0.004);
   EXPECT_LT(std::fabs(walk.yaw_bias_rad_s), 0.0004);

@@ -86,7 +86,9 @@ TEST(SimPose, NoiseAndDriftHaveTheStatedSize) {
   const std::vector<hal::PoseSample> samples = collect(rig, 4.0);
   for (const hal::PoseSample& sample : samples) {
     position += vector(sample.p_ST_m).squaredNorm() / 3;
-    angle += std::pow(quaternion(sample.q_ST_wxyz).angularDistance({1, 0, 0, 0}), 2) / 3;
+    angle +=
+        std::pow(quaternion(sample.q_ST_wxyz).angularDistance(Eigen::Quaterniond::Identity()), 2) /
+        3;
   }
   const auto count = static_cast<double>(samples.size());
   EXPECT_NEAR(std::sqrt(position / count), 0.002, 0.0002);
@@ -101,7 +103,9 @@ TEST(SimPose, NoiseAndDriftHaveTheStatedSize) {
     Rig walking({}, config, seed, tracked());
     const hal::PoseSample last = collect(walking, 0.5).back();
     position += vector(last.p_ST_m).squaredNorm() / 120;
-    angle += std::pow(quaternion(last.q_ST_wxyz).angularDistance({1, 0, 0, 0}), 2) / 40;
+    angle +=
+        std::pow(quaternion(last.q_ST_wxyz).angularDistance(Eigen::Quaterniond::Identity()), 2) /
+        40;
   }
   EXPECT_NEAR(std::sqrt(position), 0.01 * std::sqrt(0.5), 0.0015);
   EXPECT_NEAR(std::sqrt(angle), 0.02 * std::sqrt(0.5), 0.004);
