@@ -91,8 +91,9 @@ class Simulator {
   Simulator(const Simulator&) = delete;
   Simulator& operator=(const Simulator&) = delete;
 
-  // clock, can, imu, depth_camera and, where the robot has one, pose are set; the rest is null. clock->wait_until(t) steps the
-  // physics until now() >= t. The ports live as long as the simulator.
+  // clock, can, imu, depth_camera and, where the robot has one, pose are set; the rest is null.
+  // clock->wait_until(t) steps the physics until now() >= t. The ports live as long as the
+  // simulator.
   hal::Board board();
 
   Truth truth() const;

@@ -67,8 +67,8 @@ struct DepthNoiseConfig {
   }
 };
 
-// White noise is per sample. The walks are random walks of what the camera takes for its pose; a jump
-// is what a relocalisation does to it.
+// White noise is per sample. The walks are random walks of what the camera takes for its pose; a
+// jump is what a relocalisation does to it.
 struct TrackingNoiseConfig {
   double latency_s = 0;            // from exposure to delivery
   double position_noise_m = 0;     // one sigma per axis

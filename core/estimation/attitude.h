@@ -2,9 +2,9 @@
 //
 // The gyro is integrated as rotation vectors; the accelerometer's "up" pulls roll and pitch back
 // with a first-order gain and teaches the gyro bias with an integral gain (explicit complementary
-// filter, Mahony, Hamel, Pflimlin, IEEE TAC 2008, eq. 32). Yaw has no reference here: it drifts with
-// the gyro unless correct_yaw() is told. While the robot lies still the bias of all three axes is learned directly and gravity pulls
-// harder.
+// filter, Mahony, Hamel, Pflimlin, IEEE TAC 2008, eq. 32). Yaw has no reference here: it drifts
+// with the gyro unless correct_yaw() is told. While the robot lies still the bias of all three axes
+// is learned directly and gravity pulls harder.
 #pragma once
 
 #include "core/base/status.h"

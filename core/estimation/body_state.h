@@ -44,7 +44,8 @@ class BodyStateEstimator {
   void update(const Vector3& acceleration_O_m_s2,
               const std::array<FootObservation, robot::kLegs>& feet, double step_s);
 
-  // Moves trunk and feet together: O's place and heading under them change, their relation does not.
+  // Moves trunk and feet together: O's place and heading under them change, their relation does
+  // not.
   void move(const Vector3& shift_O_m, double yaw_rad);
 
   const Vector3& p_OB_m() const { return p_O_m_; }

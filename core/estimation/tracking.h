@@ -1,14 +1,14 @@
 // What a tracking camera says about the drift of O: slow corrections of position and yaw.
 //
-// The camera's trunk pose in O is the chain of paper 002, equation (1), X_OB = X_OS X_ST X_TB; it is
-// compared with the estimator's own pose at the sample's stamp. Of the difference a small share is
-// given back per sample, at a bounded rate: O stays continuous, its corrections are of the size of
-// the drift they remove, and the map in it does not tear (docs/decisions/007). The way is summed up
-// increment by increment, so that neither a turn of S nor a jump is multiplied by the distance.
+// The camera's trunk pose in O is the chain of paper 002, equation (1), X_OB = X_OS X_ST X_TB; it
+// is compared with the estimator's own pose at the sample's stamp. Of the difference a small share
+// is given back per sample, at a bounded rate: O stays continuous, its corrections are of the size
+// of the drift they remove, and the map in it does not tear (docs/decisions/007). The way is summed
+// up increment by increment, so that neither a turn of S nor a jump is multiplied by the distance.
 //
-// Increments that differ from the estimator's by more than a step of the body and the odometry's own
-// drift can explain are the camera's: relocalisation, restart, return from an outage. They move S and
-// leave O alone. Gravity is the estimator's: the tilt of S follows it slowly.
+// Increments that differ from the estimator's by more than a step of the body and the odometry's
+// own drift can explain are the camera's: relocalisation, restart, return from an outage. They move
+// S and leave O alone. Gravity is the estimator's: the tilt of S follows it slowly.
 //
 // Cost: a few 3 x 3 products per sample. Memory: < 1 kB.
 #pragma once

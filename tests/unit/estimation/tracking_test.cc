@@ -37,7 +37,8 @@ robot::TrackingCameraSpecification camera() {
   return camera;
 }
 
-// Walks along a curve at 0.5 m/s; its odometry sees the way longer and the turn faster than they are.
+// Walks along a curve at 0.5 m/s; its odometry sees the way longer and the turn faster than they
+// are.
 class Walk {
  public:
   double scale = 1.0;         // of the odometry
