@@ -19,9 +19,7 @@
 // Rotors: their mass sits where the simulator puts it (abduction's in the trunk at the joint, hip's
 // in the abad link at the hip, knee's in the thigh at the hip), as points. Their reflected inertia
 // n^2 J is added to the joint's DIAGONAL entry of the mass matrix: exact for the joint's own
-// acceleration, it leaves out the gyroscopic coupling n J of a rotor with the trunk's rotation. The
-// simulator adds n^2 J to the child link's inertia instead (ODE has no armature), where the motion
-// of the parents feels it too: its mass matrix is larger there (core/robot/README.md).
+// acceleration, it leaves out the gyroscopic coupling n J of a rotor with the trunk's rotation.
 //
 // Memory: sizeof(Dynamics) about 5 kB, no heap. Cost: tests/timing, case dynamics.
 #pragma once

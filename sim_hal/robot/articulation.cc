@@ -104,8 +104,8 @@ Articulation::Articulation(dWorldID world, const robot::RobotModel& model, const
     body = dBodyCreate(world);
     dBodySetAutoDisableFlag(body, 0);
     // ODE's own gyroscopic term is implicit for the body as if it were free. The shank, with 6e-6
-    // kg m^2 about its long axis and the knee's armature across, lost 2.4 J in 3 s of passive swing
-    // to it at any step length; apply() adds the explicit term instead (drift: 5 mJ).
+    // kg m^2 about its long axis and forty times that across, lost energy to it at any step length;
+    // apply() adds the explicit term instead.
     dBodySetGyroscopicMode(body, 0);
   }
   build_trunk();
@@ -120,14 +120,13 @@ Articulation::Articulation(dWorldID world, const robot::RobotModel& model, const
 }
 
 void Articulation::set_mass(std::size_t body, double mass_kg, const Vector3& centre_m,
-                            const Matrix3& link_inertia, const Matrix3& armature) {
-  const Matrix3 inertia = link_inertia + armature;
+                            const Matrix3& inertia) {
   dMass mass;
   dMassSetParameters(&mass, mass_kg, 0, 0, 0, inertia(0, 0), inertia(1, 1), inertia(2, 2),
                      inertia(0, 1), inertia(0, 2), inertia(1, 2));
   dBodySetMass(bodies_[body], &mass);
   centres_[body] = centre_m;
-  link_inertias_[body] = link_inertia;
+  inertias_[body] = inertia;
 }
 
 // The abduction motors' rotors sit in the trunk, at their joints.
@@ -139,15 +138,19 @@ void Articulation::build_trunk() {
     sum.add(model_.actuators[0].rotor_mass_kg, robot::abduction_joint_B_m(model_, leg),
             Matrix3::Zero());
   }
-  set_mass(0, sum.mass_kg, sum.centre(), sum.about_centre(), Matrix3::Zero());
+  set_mass(0, sum.mass_kg, sum.centre(), sum.about_centre());
   dBodySetPosition(bodies_[0], centres_[0].x(), centres_[0].y(), centres_[0].z());
   set_rotation(bodies_[0], Matrix3::Identity());
 }
 
 // Built with all joint angles zero. The hip's rotor sits in the abad link at the hip joint, the
-// knee's in the thigh at the hip joint (coaxial drives). Each link carries its own motor's
-// reflected inertia about its joint axis: ODE has no armature, and without it explicit joint
-// control diverges.
+// knee's in the thigh at the hip joint (coaxial drives).
+//
+// ODE has no armature. The reflected inertia n^2 J of a rotor resists the acceleration of its joint
+// alone, not that of the parent link, so it is no part of the child's inertia (there, the knee's
+// 0.0054 kg m^2 would double what the hip has to turn). It is a hinge motor without a force limit
+// that wants the present rate r, softened by the constraint force mixing cfm = step / (n^2 J):
+// ODE solves r_new = r - cfm * force, so the force is -n^2 J (r_new - r) / step, implicitly.
 void Articulation::build_leg(dWorldID world, std::size_t leg) {
   const double side = robot::left_sign(leg);
   const Vector3 abad_W = robot::abduction_joint_B_m(model_, leg);
@@ -167,10 +170,9 @@ void Articulation::build_leg(dWorldID world, std::size_t leg) {
     sum.add(links[k]->mass_kg, mirrored(links[k]->centre_of_mass_m, side),
             mirrored_inertia(links[k]->inertia_kg_m2, side));
     if (rotors[k] > 0) sum.add(rotors[k], rotor_places[k], Matrix3::Zero());
-    const Matrix3 armature =
-        model_.actuators[k].reflected_inertia_kg_m2() * axes[k] * axes[k].transpose();
-    set_mass(body, sum.mass_kg, sum.centre(), sum.about_centre(), armature);
-    axis_inertia_[joint] = axes[k].dot((sum.about_origin + armature) * axes[k]);
+    const double armature_kg_m2 = model_.actuators[k].reflected_inertia_kg_m2();
+    set_mass(body, sum.mass_kg, sum.centre(), sum.about_centre());
+    axis_inertia_[joint] = axes[k].dot(sum.about_origin * axes[k]) + armature_kg_m2;
     const Vector3 centre = origins[k] + centres_[body];
     dBodySetPosition(bodies_[body], centre.x(), centre.y(), centre.z());
     set_rotation(bodies_[body], Matrix3::Identity());
@@ -179,6 +181,10 @@ void Articulation::build_leg(dWorldID world, std::size_t leg) {
     dJointAttach(hinges_[joint], bodies_[body], bodies_[parent]);
     dJointSetHingeAnchor(hinges_[joint], origins[k].x(), origins[k].y(), origins[k].z());
     dJointSetHingeAxis(hinges_[joint], axes[k].x(), axes[k].y(), axes[k].z());
+    if (armature_kg_m2 > 0.0) {
+      dJointSetHingeParam(hinges_[joint], dParamFMax, dInfinity);
+      dJointSetHingeParam(hinges_[joint], dParamCFM, step_s_ / armature_kg_m2);
+    }
   }
 }
 
@@ -242,12 +248,11 @@ Vector3 Articulation::point_velocity_W(std::size_t body, const Vector3& p_link_m
          vector(dBodyGetAngularVel(bodies_[body])).cross(arm);
 }
 
-// The armature stands for a rotor that spins about its own axis only: it takes no part.
 void Articulation::apply_gyroscopic_torques() {
   for (std::size_t i = 0; i < kBodies; ++i) {
     const Matrix3 rotation = matrix(dBodyGetRotation(bodies_[i]));
     const Vector3 w = rotation.transpose() * vector(dBodyGetAngularVel(bodies_[i]));
-    const Vector3 torque = -w.cross(Vector3(link_inertias_[i] * w));
+    const Vector3 torque = -w.cross(Vector3(inertias_[i] * w));
     dBodyAddRelTorque(bodies_[i], torque.x(), torque.y(), torque.z());
   }
 }
@@ -275,6 +280,7 @@ void Articulation::update() {
     const double turns = std::round((positions_[joint] - angle) / kTwoPi);
     positions_[joint] = angle + kTwoPi * turns;
     velocities_[joint] = dJointGetHingeAngleRate(hinges_[joint]);
+    dJointSetHingeParam(hinges_[joint], dParamVel, velocities_[joint]);  // armature: build_leg()
   }
 }
 
@@ -288,6 +294,10 @@ double Articulation::mechanical_energy_J(double gravity_m_s2) const {
     const Vector3 w = r.transpose() * vector(dBodyGetAngularVel(body));
     energy += 0.5 * mass.mass * v.squaredNorm() + 0.5 * w.dot(matrix(mass.I) * w);
     energy += mass.mass * gravity_m_s2 * dBodyGetPosition(body)[2];
+  }
+  for (std::size_t joint = 0; joint < robot::kJoints; ++joint) {
+    const robot::Actuator& actuator = model_.actuators[joint % robot::kJointsPerLeg];
+    energy += 0.5 * actuator.reflected_inertia_kg_m2() * velocities_[joint] * velocities_[joint];
   }
   return energy;
 }

@@ -63,8 +63,7 @@ class Articulation {
  private:
   void build_trunk();
   void build_leg(dWorldID world, std::size_t leg);
-  void set_mass(std::size_t body, double mass_kg, const Vector3& centre_m,
-                const Matrix3& link_inertia, const Matrix3& armature);
+  void set_mass(std::size_t body, double mass_kg, const Vector3& centre_m, const Matrix3& inertia);
   void apply_gyroscopic_torques();
   void place(const StartPose& start);
   double lowest_point_m() const;
@@ -74,8 +73,8 @@ class Articulation {
   std::array<dBodyID, kBodies> bodies_{};
   std::array<dJointID, robot::kJoints> hinges_{};
   std::array<Vector3, kBodies> centres_;               // centre of mass in the link frame
-  std::array<Matrix3, kBodies> link_inertias_;         // about the centre of mass, without armature
-  std::array<double, robot::kJoints> axis_inertia_{};  // about the joint axis, child link alone
+  std::array<Matrix3, kBodies> inertias_;              // about the centre of mass
+  std::array<double, robot::kJoints> axis_inertia_{};  // about the joint axis, child link and rotor
   std::array<double, robot::kJoints> positions_{};
   std::array<double, robot::kJoints> velocities_{};
 };

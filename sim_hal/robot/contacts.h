@@ -24,6 +24,7 @@ namespace surefoot::sim {
 
 // What one shape felt in the last step, axes of W.
 struct ShapeContact {
+  double pressure_N = 0;  // normal force of one contact, mean over those that press
   Vector3 force_N = Vector3::Zero();
   Vector3 slip_velocity_m_s = Vector3::Zero();  // of the surface point with the largest force
   bool touching = false;

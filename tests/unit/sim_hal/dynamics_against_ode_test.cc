@@ -1,5 +1,5 @@
 // core's dynamics against ODE's: a robot thrown into the air with its joints moving and torques on
-// them. Rotor inertia is zero here: the two place it differently (core/robot/README.md).
+// them, its rotors resisting as both say.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,6 @@ robot::RobotModel bare_mini_cheetah() {
   robot::RobotModel model = mini_cheetah();
   model.trunk.centre_of_mass_m = {0.01, -0.004, 0.006};
   for (robot::Actuator& actuator : model.actuators) {
-    actuator.rotor_inertia_kg_m2 = 0;
     actuator.dry_friction_Nm = 0;
     actuator.viscous_friction_Nm_s = 0;
     actuator.min_rad = -60;
