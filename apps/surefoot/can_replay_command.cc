@@ -9,6 +9,7 @@
 #include "core/actuation/joint_bus.h"
 #include "core/autonomy/autonomy.h"
 #include "core/estimation/estimator.h"
+#include "core/math/gravity.h"
 #include "hal/candump/candump_reader.h"
 
 namespace surefoot::apps {
@@ -18,7 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLegNames[] = {"FR", "FL", "HR", "HL"};
 constexpr const char* kJointNames[] = {"abad", "hip", "knee"};
-constexpr double kGravity_m_s2 = 9.81;
 constexpr TimeNs kLongPause =
     milliseconds(1000);  // a longer one in the log is not filled with ticks
 

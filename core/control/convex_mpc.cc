@@ -3,11 +3,11 @@
 #include "core/control/friction_pyramid.h"
 #include "core/geometry/rotations.h"
 #include "core/math/elementary.h"
+#include "core/math/gravity.h"
 
 namespace surefoot::control {
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81;
 // Directions of force space whose squared lever is below this move nothing (feet in one line, one
 // foot, none): they are left to effort.
 constexpr double kSmallestPivot = 1e-9;

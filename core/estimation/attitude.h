@@ -11,13 +11,12 @@
 #include "core/base/time.h"
 #include "core/estimation/config.h"
 #include "core/geometry/rotations.h"
+#include "core/math/gravity.h"
 #include "core/math/linear.h"
 #include "core/robot/robot_model.h"
 #include "hal/api/imu_port.h"
 
 namespace surefoot::estimation {
-
-inline constexpr double kGravity_m_s2 = 9.81;
 
 class AttitudeEstimator {
  public:

@@ -1,12 +1,15 @@
-// Which feet bear load: ground forces from a momentum observer on the joint torques, judged
-// together with the gait's phase.
+// Which feet bear load: ground forces from the joint torques, judged together with the gait's phase.
 //
 // A torque command alone proves nothing (a leg pushing into the air reports the torque too). The
-// observer compares the torque with the momentum the leg gains; what is missing went into the
-// ground (generalised-momentum residual, De Luca and Mattone, ICRA 2003), with a constant diagonal
-// inertia per joint, which the reflected rotors dominate. A swinging leg that brakes leaves a
-// residual too, so a touchdown also needs the foot to have stopped sinking, and far above the
-// expected ground it takes a larger force (surprise_force_N): something unmapped was hit.
+// torques that the motion needs without the ground come from the dynamics of the whole robot
+// (robot/dynamics.h), with measured accelerations: joints by difference, trunk from the IMU. What is
+// missing came through the feet. First-order low-pass: this is the residual of the momentum observer
+// (De Luca and Mattone, ICRA 2003), M nu' + C nu + g - tau instead of its integral.
+//
+// A touchdown also needs the foot to have stopped sinking, and far above the expected ground it
+// takes a larger force (surprise_force_N): something unmapped was hit.
+//
+// Cost: one inverse dynamics of 18 velocities, four 3 x 3 inverses.
 #pragma once
 
 #include <array>
@@ -14,6 +17,7 @@
 #include "core/actuation/joint_bus.h"
 #include "core/estimation/config.h"
 #include "core/math/linear.h"
+#include "core/robot/dynamics.h"
 #include "core/robot/kinematics.h"
 #include "core/robot/robot_model.h"
 
@@ -32,6 +36,13 @@ struct FootMotion {
   double vertical_velocity_O_m_s = 0;
 };
 
+// Of the trunk, as the IMU shows it.
+struct TrunkMotion {
+  Matrix3 R_OB = Matrix3::Identity();
+  Vector3 angular_velocity_B_rad_s = Vector3::Zero();
+  Vector3 specific_force_B_m_s2 = Vector3::Zero();  // of B's origin
+};
+
 struct FootContact {
   bool in_contact = false;
   std::uint32_t ticks_since_change = 0;
@@ -42,24 +53,25 @@ class ContactEstimator {
  public:
   void reset(const ContactConfig& config, const robot::RobotModel& model, double tick_s);
 
-  // Joint states in the order of robot::joint_index; R_OB from the attitude estimator.
+  // Joint states in the order of robot::joint_index.
   void update(const std::array<actuation::JointState, robot::kJoints>& joints,
               const std::array<GaitPhase, robot::kLegs>& gait,
-              const std::array<FootMotion, robot::kLegs>& motion, const Matrix3& R_OB);
+              const std::array<FootMotion, robot::kLegs>& motion, const TrunkMotion& trunk);
 
   const std::array<FootContact, robot::kLegs>& feet() const { return feet_; }
 
  private:
-  Vector3 external_torque_Nm(std::size_t leg, const Vector3& qd_rad_s, const Vector3& torque_Nm);
+  void observe_torques(const std::array<actuation::JointState, robot::kJoints>& joints,
+                       const TrunkMotion& trunk);
   void decide(std::size_t leg, const GaitPhase& gait, const FootMotion& motion);
 
   ContactConfig config_;
   robot::RobotModel model_;
   double tick_s_ = 0;
-  Vector3 inertia_kg_m2_ = Vector3::Zero();  // diagonal, per joint of a leg
+  robot::Dynamics dynamics_;
   bool started_ = false;
-  std::array<Vector3, robot::kLegs> integral_Nm_s_;
-  std::array<Vector3, robot::kLegs> residual_Nm_;
+  robot::GeneralisedVector velocity_ = robot::GeneralisedVector::Zero();  // of the last tick
+  robot::JointVector external_Nm_ = robot::JointVector::Zero();           // low-passed
   std::array<int, robot::kLegs> confirmations_{};
   std::array<FootContact, robot::kLegs> feet_;
 };

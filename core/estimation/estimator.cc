@@ -68,7 +68,9 @@ void Estimator::decide_contacts(const std::array<GaitPhase, robot::kLegs>& gait)
     motion[leg].vertical_velocity_O_m_s =
         state_.v_OB_m_s[2] + observations_[leg].velocity_from_body_O_m_s[2];
   }
-  contact_.update(state_.joints, gait, motion, state_.R_OB);
+  contact_.update(
+      state_.joints, gait, motion,
+      {state_.R_OB, state_.angular_velocity_B_rad_s, attitude_.specific_force_B_m_s2()});
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     const FootContact& contact = contact_.feet()[leg];
     state_.feet[leg].in_contact = contact.in_contact;

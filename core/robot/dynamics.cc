@@ -1,12 +1,11 @@
 #include "core/robot/dynamics.h"
+#include "core/math/gravity.h"
 
 #include "core/math/elementary.h"
 #include "core/robot/kinematics.h"
 
 namespace surefoot::robot {
 namespace {
-
-constexpr double kGravity_m_s2 = 9.81;
 
 constexpr std::size_t link_of(std::size_t leg, std::size_t joint) {
   return 1 + joint_index(leg, joint);
