@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/base/parameters.h"
+#include "core/control/whole_body_config.h"
 #include "core/robot/robot_model.h"
 
 namespace surefoot::control {
@@ -182,6 +183,7 @@ struct ControlConfig {
   BodyConfig body;
   ForceConfig force;
   MpcConfig mpc;
+  WholeBodyConfig whole_body;
   StandUpConfig stand_up;
 
   template <class Self, class Visitor>
@@ -192,6 +194,7 @@ struct ControlConfig {
     visit.group("body", self.body);
     visit.group("force", self.force);
     visit.group("mpc", self.mpc);
+    visit.group("whole_body", self.whole_body);
     visit.group("stand_up", self.stand_up);
   }
 };

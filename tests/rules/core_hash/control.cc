@@ -4,6 +4,8 @@
 #include "core/control/force_distribution.h"
 #include "core/control/gait.h"
 #include "core/control/swing.h"
+#include "core/control/whole_body.h"
+#include "core/geometry/rotations.h"
 #include "tests/rules/core_hash/workloads.h"
 #include "tests/support/mpc_problems.h"
 
@@ -78,6 +80,90 @@ void hash_convex_mpc(Fnv64& hash) {
     }
     mix(hash, solution.residual_N);
   }
+}
+
+namespace {
+
+robot::RobotModel whole_robot() {
+  robot::RobotModel model;
+  model.trunk = {3.3, {0.01, 0, -0.01}, {0.011, 0.036, 0.043, 0, 0.001, 0}};
+  model.abad = {0.54, {0, 0.036, 0}, {381e-6, 560e-6, 444e-6, 58e-6, 0.45e-6, 0.95e-6}};
+  model.thigh = {0.634, {0, 0.016, -0.02}, {1983e-6, 2103e-6, 408e-6, 245e-6, 13e-6, 1.5e-6}};
+  model.shank = {0.064, {0, 0, -0.061}, {245e-6, 248e-6, 6e-6, 0, 0, 0}};
+  model.abad_x_m = 0.19;
+  model.abad_y_m = 0.049;
+  model.hip_offset_m = 0.062;
+  model.thigh_length_m = 0.209;
+  model.knee_offset_m = 0.004;
+  model.shank_length_m = 0.195;
+  model.foot_radius_m = 0.0175;
+  for (robot::Actuator& actuator : model.actuators) {
+    actuator.gear_ratio = 6.0;
+    actuator.rotor_inertia_kg_m2 = 63e-6;
+    actuator.rotor_mass_kg = 0.055;
+    actuator.torque_limit_Nm = 20.0;
+    actuator.no_load_speed_rad_s = 30.0;
+    actuator.min_rad = -3.0;
+    actuator.max_rad = 3.0;
+  }
+  return model;
+}
+
+control::WholeBodyConfig whole_body_config() {
+  control::WholeBodyConfig config;
+  config.friction = 0.4;
+  config.max_normal_N = 150;
+  config.position_gain_1_s2 = config.attitude_gain_1_s2 = {100, 100, 100};
+  config.velocity_gain_1_s = config.rate_gain_1_s = {10, 10, 10};
+  config.foot_position_gain_1_s2 = {500, 500, 500};
+  config.foot_velocity_gain_1_s = {10, 10, 10};
+  config.force_weight = 1.0;
+  config.linear_relaxation_weight = config.angular_relaxation_weight = 0.1;
+  config.max_residual_N = 0.1;
+  config.max_joint_step_rad = 0.5;
+  return config;
+}
+
+Vector3 random_vector(Random& random, double size) {
+  Vector3 v;
+  for (int axis = 0; axis < 3; ++axis) v[axis] = random.uniform(-size, size);
+  return v;
+}
+
+}  // namespace
+
+void hash_whole_body(Fnv64& hash) {
+  control::WholeBody whole_body;
+  whole_body.reset(whole_body_config(), whole_robot());
+  Random random(15);
+  for (int i = 0; i < 400; ++i) {
+    control::WholeBodyState state;
+    control::BodyTask body;
+    control::LegTasks legs;
+    const Vector3 angles = random_vector(random, 0.5);
+    state.R_OB = geometry::from_roll_pitch_yaw(angles[0], angles[1], angles[2]);
+    state.v_OB_m_s = random_vector(random, 1.0);
+    state.angular_velocity_B_rad_s = random_vector(random, 1.0);
+    body.p_OB_m = random_vector(random, 0.05);
+    body.v_OB_m_s = random_vector(random, 1.0);
+    for (int joint = 0; joint < 12; ++joint) {
+      state.q_rad[joint] = random.uniform(-0.3, 0.3) + (joint % 3 == 2 ? 1.5 : 0.0);
+      state.qd_rad_s[joint] = random.uniform(-5, 5);
+    }
+    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+      legs[leg].in_contact = random.below(3) > 0;
+      legs[leg].force_O_N = random_vector(random, 20.0) + Vector3(0, 0, 30);
+      legs[leg].position_O_m = random_vector(random, 0.3);
+      legs[leg].velocity_O_m_s = random_vector(random, 1.0);
+    }
+    const control::WholeBodyCommand& command = whole_body.update(state, body, legs);
+    mix(hash, command.q_rad);
+    mix(hash, command.qd_rad_s);
+    mix(hash, command.torque_Nm);
+    mix(hash, command.acceleration);
+  }
+  hash.word(whole_body.counters().damped, 8);
+  hash.word(whole_body.counters().refused, 8);
 }
 
 }  // namespace surefoot::tests
