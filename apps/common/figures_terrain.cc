@@ -205,6 +205,7 @@ FootholdCounts draw_footholds(Drawing& drawing, const std::vector<Touchdown>& to
         if (visible) drawing.ring(to, 4, {palette::kPurple, 2, false});
         break;
       case control::FootholdReason::kNominal:
+      case control::FootholdReason::kUnseen:
       case control::FootholdReason::kMapOff:
         ++counts.nominal;
         if (visible) drawing.dot(to, 2.2, palette::kPaper);

@@ -10,6 +10,7 @@ namespace {
 
 // Budgets on the robot's computer; a campaign's summaries say what was used (docs/timing.md).
 constexpr std::uint32_t kControlBudget_us = 1000;
+constexpr std::uint32_t kMpcBudget_us = 1000;
 constexpr std::uint32_t kMappingBudget_us = 10000;
 
 Autonomy& of(void* self) { return *static_cast<Autonomy*>(self); }
@@ -25,6 +26,20 @@ runtime::Task control_task(Autonomy& autonomy) {
   };
   task.run = [](void* self) { of(self).run_control(); };
   task.publish = [](void* self, TickOutputs& outputs) { of(self).publish_control(outputs); };
+  return task;
+}
+
+// After control in the table: the problem is that of the tick's own state.
+runtime::Task mpc_task(Autonomy& autonomy) {
+  runtime::Task task;
+  task.name = "mpc";
+  task.period_ticks = autonomy::kMpcPeriodTicks;
+  task.latency_ticks = autonomy::kMpcLatencyTicks;
+  task.budget_us = kMpcBudget_us;
+  task.self = &autonomy;
+  task.release = [](void* self, const TickInputs& inputs) { return of(self).begin_mpc(inputs); };
+  task.run = [](void* self) { of(self).run_mpc(); };
+  task.publish = [](void* self, TickOutputs&) { of(self).publish_mpc(); };
   return task;
 }
 
@@ -49,7 +64,7 @@ Status Stack::start(const Config& config, const hal::Board& board, runtime::Slow
                     runtime::TickObserver* observer) {
   const Status ready = autonomy_.reset(config.robot, config.autonomy);
   if (!ok(ready)) return ready;
-  tasks_ = {control_task(autonomy_), mapping_task(autonomy_)};
+  tasks_ = {control_task(autonomy_), mpc_task(autonomy_), mapping_task(autonomy_)};
   runtime::ExecutiveSetup setup;
   setup.board = board;
   setup.tasks = tasks_;
@@ -64,7 +79,8 @@ std::vector<MemoryRow> memory_table() {
       {"runtime", sizeof(runtime::Executive)},
       {"mapping", sizeof(autonomy::MapTask)},
       {"estimation", sizeof(estimation::Estimator) + sizeof(autonomy::PoseHistory)},
-      {"control", sizeof(control::Locomotion) + sizeof(control::StandUp)},
+      {"control", sizeof(control::Locomotion) + sizeof(control::StandUp) +
+                      sizeof(autonomy::MpcTask)},
       {"actuation", sizeof(actuation::JointBus)},
       {"mission", sizeof(autonomy::Mission)},
       {"configuration", sizeof(robot::RobotModel) + sizeof(autonomy::AutonomyConfig)},

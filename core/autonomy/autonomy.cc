@@ -30,6 +30,7 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   mission_.reset(config.mission);
   stand_up_.reset(config.control.stand_up, model, config.control.body.height_m);
   locomotion_.reset(config.control, model);
+  mpc_.reset(config.control.mpc);
   outputs_ = TickOutputs{};
   commands_ = actuation::JointCommands{};
   walking_ready_ = false;
@@ -126,10 +127,22 @@ void Autonomy::act(const estimation::RobotState& state) {
     case MissionPhase::kWalk:
     case MissionPhase::kArrived:
       if (!walking_ready_) begin_walking(state);
-      commands_ = locomotion_.update(state, window(), mission_.command(), mission_.gait(), tick_s_);
+      commands_ = locomotion_.update(state, window(), walk_command(), mpc_.plan(), tick_s_);
       break;
     case MissionPhase::kStopped: commands_ = bus_.damping_commands(); break;
   }
+}
+
+control::WalkCommand Autonomy::walk_command() const {
+  return {mission_.command(), mission_.gait(),
+          config_.mission.unseen_ground ? control::UnseenGround::kAllowed
+                                        : control::UnseenGround::kRefused};
+}
+
+bool Autonomy::locomotion_acts() const {
+  const MissionPhase phase = mission_.phase();
+  return phase == MissionPhase::kSettle || phase == MissionPhase::kWalk ||
+         phase == MissionPhase::kArrived;
 }
 
 void Autonomy::send() {
@@ -182,6 +195,13 @@ void Autonomy::report_legs(const estimation::RobotState& state) {
     telemetry.foothold_O_m = to_array(status.foothold.position_O_m);
     telemetry.foothold_reason = status.foothold.reason;
   }
+}
+
+bool Autonomy::begin_mpc(const TickInputs& inputs) {
+  if (!walking_ready_ || !locomotion_acts()) return false;
+  locomotion_.plan(estimator_.state(), mpc_.problem());
+  mpc_.release(inputs.stamp);
+  return true;
 }
 
 bool Autonomy::begin_mapping(const TickInputs& inputs) {

@@ -10,6 +10,7 @@
 #include "core/autonomy/config.h"
 #include "core/autonomy/map_task.h"
 #include "core/autonomy/mission.h"
+#include "core/autonomy/mpc_task.h"
 #include "core/autonomy/pose_history.h"
 #include "core/autonomy/tick.h"
 #include "core/control/locomotion.h"
@@ -32,6 +33,11 @@ class Autonomy {
   void run_control();
   void publish_control(TickOutputs& outputs) const { outputs = outputs_; }
 
+  // The predictive controller's task.
+  bool begin_mpc(const TickInputs& inputs);
+  void run_mpc() { mpc_.run(); }
+  void publish_mpc() { mpc_.publish(); }
+
   // The mapping task.
   bool begin_mapping(const TickInputs& inputs);
   void run_mapping() { map_.run(); }
@@ -48,6 +54,8 @@ class Autonomy {
   void receive_poses();
   StopReason find_fault();
   void act(const estimation::RobotState& state);
+  bool locomotion_acts() const;
+  control::WalkCommand walk_command() const;
   void begin_walking(const estimation::RobotState& state);
   const mapping::MapWindow* window() const;
   void send();
@@ -66,6 +74,7 @@ class Autonomy {
   Mission mission_;
   control::StandUp stand_up_;
   control::Locomotion locomotion_;
+  MpcTask mpc_;
   actuation::JointCommands commands_;
   bool walking_ready_ = false;  // stand-up is over, O has its place
   double imu_silent_s_ = 0;

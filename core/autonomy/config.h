@@ -77,6 +77,7 @@ struct MissionConfig {
   double settle_s = 0;   // standing still before the first step
   double stand_s = 0;    // mission stand: how long
   double timeout_s = 0;  // of the whole mission
+  bool unseen_ground = false;  // the operator vouches for ground that the robot has not seen
   FixedVector<ScriptStep, kMaxScriptSteps> script;  // mission script: one after the other
 
   template <class Self, class Visitor>
@@ -94,6 +95,7 @@ struct MissionConfig {
     visit.real("settle_s", self.settle_s, {0.1, 60.0}, "standing still before the first step");
     visit.real("stand_s", self.stand_s, {0.0, 3600.0}, "mission stand: how long");
     visit.real("timeout_s", self.timeout_s, {1.0, 36000.0}, "of the whole mission");
+    visit.boolean("unseen_ground", self.unseen_ground, "the operator vouches for unseen ground");
     visit.list("script", self.script);
   }
 };

@@ -19,7 +19,6 @@ double approach(double value, double target, double step_s, double time_constant
 void BodyReferenceTracker::reset(const BodyConfig& config, const robot::RobotModel& model) {
   *this = BodyReferenceTracker{};
   config_ = config;
-  mass_kg_ = model.total_mass_kg();
   foot_radius_m_ = model.foot_radius_m;
 }
 
@@ -89,30 +88,6 @@ void BodyReferenceTracker::update(const estimation::RobotState& state,
         math::clamp(ahead, -config_.max_reference_error_m, config_.max_reference_error_m);
   }
   reference_.p_OB_m[2] = reference_.ground_z_m + config_.height_m;
-}
-
-Vector6 BodyReferenceTracker::wrench_O(const estimation::RobotState& state) const {
-  const Matrix3 wanted =
-      geometry::from_roll_pitch_yaw(reference_.roll_rad, reference_.pitch_rad, reference_.yaw_rad);
-  // Rotation still to be made and rates, in B axes: the gains are roll, pitch, yaw.
-  const Vector3 turn_B = geometry::to_rotation_vector(state.R_OB.transpose() * wanted);
-  const Vector3 rate_error_B =
-      state.R_OB.transpose() * Vector3(0.0, 0.0, reference_.yaw_rate_rad_s) -
-      state.angular_velocity_B_rad_s;
-  Vector3 force;
-  Vector3 moment_B;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    force[row] = mass_kg_ *
-                 (config_.position_gain_1_s2[i] * (reference_.p_OB_m[row] - state.p_OB_m[row]) +
-                  config_.velocity_gain_1_s[i] * (reference_.v_OB_m_s[row] - state.v_OB_m_s[row]));
-    moment_B[row] = config_.inertia_kg_m2[i] * (config_.attitude_gain_1_s2[i] * turn_B[row] +
-                                                config_.rate_gain_1_s[i] * rate_error_B[row]);
-  }
-  force[2] += mass_kg_ * estimation::kGravity_m_s2;
-  Vector6 wrench;
-  wrench << force, state.R_OB * moment_B;
-  return wrench;
 }
 
 }  // namespace surefoot::control

@@ -1,5 +1,4 @@
-// What the trunk should do: the ground under the feet, the pose above it, and the wrench that gets
-// there.
+// What the trunk should do: the ground under the feet and the pose above it.
 #pragma once
 
 #include <array>
@@ -31,9 +30,6 @@ class BodyReferenceTracker {
   // Follows the feet in contact with the ground plane and the command with the reference pose.
   void update(const estimation::RobotState& state, const VelocityCommand& command, double step_s);
 
-  // Force [N] and moment about the trunk's origin [N m], O axes: PD on the reference plus weight.
-  Vector6 wrench_O(const estimation::RobotState& state) const;
-
   const BodyReference& reference() const { return reference_; }
 
  private:
@@ -47,7 +43,6 @@ class BodyReferenceTracker {
   void follow_ground(const estimation::RobotState& state, double step_s);
 
   BodyConfig config_;
-  double mass_kg_ = 0;
   double foot_radius_m_ = 0;
   std::array<Vector3, robot::kLegs> contact_O_m_;  // last ground contact of each foot
   BodyReference reference_;

@@ -49,6 +49,7 @@ struct FootholdConfig {
   double search_radius_m = 0;      // how far a foothold may be moved
   double margin_weight_m = 0;      // detour that one more cell of distance from an edge is worth
   double lock_progress = 0;        // no change of target after this share of a swing
+  double balance_error_m_s = 0;    // off the commanded speed by this: a step is due at any rate
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -60,6 +61,8 @@ struct FootholdConfig {
     visit.real("margin_weight_m", self.margin_weight_m, {0.0, 0.1},
                "detour that one more cell of distance from an edge is worth");
     visit.real("lock_progress", self.lock_progress, {0.0, 1.0}, "target fixed after this share");
+    visit.real("balance_error_m_s", self.balance_error_m_s, {0.0, 10.0},
+               "off the commanded speed by this: unseen ground is allowed");
   }
 };
 
@@ -81,11 +84,7 @@ struct SwingConfig {
 };
 
 struct BodyConfig {
-  double height_m = 0;                         // B above the ground between the feet
-  std::array<double, 3> position_gain_1_s2{};  // O axes
-  std::array<double, 3> velocity_gain_1_s{};
-  std::array<double, 3> attitude_gain_1_s2{};  // roll, pitch, yaw
-  std::array<double, 3> rate_gain_1_s{};
+  double height_m = 0;                    // B above the ground between the feet
   std::array<double, 3> inertia_kg_m2{};  // whole robot about B, B axes
   double ground_filter_s = 0;             // time constant of ground height and slope
   double slope_share = 0;                 // of the ground's slope that the trunk follows
@@ -95,39 +94,12 @@ struct BodyConfig {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.real("height_m", self.height_m, {0.05, 2.0}, "B above the ground between the feet");
-    visit.reals("position_gain_1_s2", self.position_gain_1_s2, {0.0, 1000.0}, "x, y, z");
-    visit.reals("velocity_gain_1_s", self.velocity_gain_1_s, {0.0, 200.0}, "x, y, z");
-    visit.reals("attitude_gain_1_s2", self.attitude_gain_1_s2, {0.0, 2000.0}, "roll, pitch, yaw");
-    visit.reals("rate_gain_1_s", self.rate_gain_1_s, {0.0, 200.0}, "roll, pitch, yaw");
     visit.reals("inertia_kg_m2", self.inertia_kg_m2, {1e-4, 100.0}, "whole robot, x y z");
     visit.real("ground_filter_s", self.ground_filter_s, {0.001, 5.0}, "time constant");
     visit.real("slope_share", self.slope_share, {0.0, 1.0}, "of the slope the trunk follows");
     visit.real("max_acceleration_m_s2", self.max_acceleration_m_s2, {0.01, 20.0}, "of the command");
     visit.real("max_reference_error_m", self.max_reference_error_m, {0.001, 1.0},
                "the position reference waits for the body");
-  }
-};
-
-struct ForceConfig {
-  double friction = 0;      // the pyramid the controller stays inside
-  double min_normal_N = 0;  // of a foot in contact
-  double max_normal_N = 0;
-  std::array<double, 3> force_weight{};  // x, y, z of the wrench's error
-  std::array<double, 3> moment_weight{};
-  double effort_weight = 0;       // on the forces themselves
-  double change_weight = 0;       // on their change from the last tick
-  double stance_kd_Nm_s_rad = 0;  // joint damping under load
-
-  template <class Self, class Visitor>
-  static void describe(Self& self, Visitor& visit) {
-    visit.real("friction", self.friction, {0.05, 2.0}, "pyramid half-width over normal force");
-    visit.real("min_normal_N", self.min_normal_N, {0.0, 1000.0}, "of a foot in contact");
-    visit.real("max_normal_N", self.max_normal_N, {1.0, 5000.0}, "of a foot in contact");
-    visit.reals("force_weight", self.force_weight, {0.0, 1000.0}, "x, y, z");
-    visit.reals("moment_weight", self.moment_weight, {0.0, 10000.0}, "x, y, z");
-    visit.real("effort_weight", self.effort_weight, {1e-6, 10.0}, "on the forces");
-    visit.real("change_weight", self.change_weight, {0.0, 10.0}, "on their change");
-    visit.real("stance_kd_Nm_s_rad", self.stance_kd_Nm_s_rad, {0.0, 20.0}, "joint damping");
   }
 };
 
@@ -181,7 +153,6 @@ struct ControlConfig {
   FootholdConfig foothold;
   SwingConfig swing;
   BodyConfig body;
-  ForceConfig force;
   MpcConfig mpc;
   WholeBodyConfig whole_body;
   StandUpConfig stand_up;
@@ -192,7 +163,6 @@ struct ControlConfig {
     visit.group("foothold", self.foothold);
     visit.group("swing", self.swing);
     visit.group("body", self.body);
-    visit.group("force", self.force);
     visit.group("mpc", self.mpc);
     visit.group("whole_body", self.whole_body);
     visit.group("stand_up", self.stand_up);

@@ -33,8 +33,8 @@ Vector3 FootholdPlanner::nominal_O_m(std::size_t leg, const estimation::RobotSta
   return {point[0], point[1], ground_z_m + model_.foot_radius_m};
 }
 
-Foothold FootholdPlanner::choose(const Vector3& nominal_O_m,
-                                 const mapping::MapWindow* window) const {
+Foothold FootholdPlanner::choose(const Vector3& nominal_O_m, const mapping::MapWindow* window,
+                                 UnseenGround unseen) const {
   Foothold foothold;
   foothold.nominal_O_m = nominal_O_m;
   foothold.position_O_m = nominal_O_m;
@@ -49,7 +49,9 @@ Foothold FootholdPlanner::choose(const Vector3& nominal_O_m,
   query.margin_weight_m = config_.margin_weight_m;
   const Result<mapping::Foothold> found = mapping::find_foothold(*window, query);
   if (!found.ok()) {
-    foothold.reason = FootholdReason::kNone;
+    const bool blind =
+        unseen == UnseenGround::kAllowed && !window->height_at(nominal_O_m[0], nominal_O_m[1]).ok();
+    foothold.reason = blind ? FootholdReason::kUnseen : FootholdReason::kNone;
     return foothold;
   }
   const mapping::Foothold& place = found.value();

@@ -13,6 +13,9 @@
 
 namespace surefoot::control {
 
+// Whether a foot may be set on ground that the map does not show.
+enum class UnseenGround : std::uint8_t { kRefused = 0, kAllowed };
+
 // Velocity command in the yaw-aligned frame of the body.
 struct VelocityCommand {
   double forward_m_s = 0;
@@ -37,8 +40,10 @@ class FootholdPlanner {
 
   // Moves the nominal point to ground that can bear a foot. window: null when mapping is off.
   // reason kNone: nothing within the search radius; position is the nominal point, not to be used.
+  // kUnseen: the same, but the nominal point has no height in the map and unseen ground is allowed.
   // Cost: a look-up, or a spiral over the search radius.
-  Foothold choose(const Vector3& nominal_O_m, const mapping::MapWindow* window) const;
+  Foothold choose(const Vector3& nominal_O_m, const mapping::MapWindow* window,
+                  UnseenGround unseen) const;
 
  private:
   FootholdConfig config_;

@@ -21,6 +21,8 @@ class Gait {
   // Goes over to another gait where the cycle ends.
   void change_to(const GaitConfig& config) { next_ = config; }
   void advance(double step_s);
+  // The leg's phase a while from now, if the gait stays.
+  LegPhase leg_at(std::size_t leg, double ahead_s) const;
   const GaitConfig& config() const { return config_; }
   const std::array<LegPhase, robot::kLegs>& legs() const { return legs_; }
 

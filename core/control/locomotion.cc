@@ -1,13 +1,11 @@
 #include "core/control/locomotion.h"
 
+#include "core/geometry/rotations.h"
 #include "core/math/elementary.h"
-#include "core/robot/kinematics.h"
+#include "core/math/gravity.h"
 
 namespace surefoot::control {
 namespace {
-
-// Below this the Jacobian is not inverted: joint speeds stay zero.
-constexpr double kSmallestDeterminant_m3 = 1e-4;
 
 double ramp(double value, double target, double max_change) {
   return value + math::clamp(target - value, -max_change, max_change);
@@ -18,13 +16,19 @@ double larger(double a, double b) { return a > b ? a : b; }
 }  // namespace
 
 void Locomotion::reset(const ControlConfig& config, const robot::RobotModel& model) {
-  *this = Locomotion{};
   config_ = config;
   model_ = model;
   gait_.reset(config.gaits.of(GaitKind::kTrot));
   footholds_.reset(config.foothold, model);
-  forces_.reset(config.force);
+  whole_body_.reset(config.whole_body, model);
   tracker_.reset(config.body, model);
+  reference_ = BodyReference{};
+  command_ = VelocityCommand{};
+  unseen_ = UnseenGround::kRefused;
+  gait_running_ = false;
+  blocked_s_ = 0;
+  legs_.fill(LegStatus{});
+  joints_ = actuation::JointCommands{};
 }
 
 void Locomotion::start(const estimation::RobotState& state) {
@@ -58,22 +62,26 @@ bool Locomotion::all_in_stance() const {
 
 const actuation::JointCommands& Locomotion::update(const estimation::RobotState& state,
                                                    const mapping::MapWindow* window,
-                                                   const VelocityCommand& command, GaitKind gait,
-                                                   double step_s) {
-  const bool stepping = gait != GaitKind::kStand;
+                                                   const WalkCommand& command,
+                                                   const ForcePlan& plan, double step_s) {
+  const bool stepping = command.gait != GaitKind::kStand;
   // Without footholds the body must not run ahead of its feet.
   constexpr double kBlockedSlowdown_s = 0.5;
   const double share =
       stepping ? math::clamp(1.0 - blocked_s_ / kBlockedSlowdown_s, 0.0, 1.0) : 0.0;
   const double change = config_.body.max_acceleration_m_s2 * step_s;
-  command_.forward_m_s = ramp(command_.forward_m_s, command.forward_m_s * share, change);
-  command_.left_m_s = ramp(command_.left_m_s, command.left_m_s * share, change);
+  const VelocityCommand& wanted = command.velocity;
+  command_.forward_m_s = ramp(command_.forward_m_s, wanted.forward_m_s * share, change);
+  command_.left_m_s = ramp(command_.left_m_s, wanted.left_m_s * share, change);
   command_.yaw_rate_rad_s =
-      ramp(command_.yaw_rate_rad_s, command.yaw_rate_rad_s * share, 4.0 * change);
+      ramp(command_.yaw_rate_rad_s, wanted.yaw_rate_rad_s * share, 4.0 * change);
 
-  advance_gait(gait, step_s);
+  advance_gait(command.gait, step_s);
   tracker_.update(state, command_, step_s);
   reference_ = tracker_.reference();
+  const Vector2 off = (state.v_OB_m_s - reference_.v_OB_m_s).head<2>();
+  const bool off_balance = off.squaredNorm() > math::square(config_.foothold.balance_error_m_s);
+  unseen_ = off_balance ? UnseenGround::kAllowed : command.unseen;
   bool blocked = false;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     advance_leg(leg, state, window, stepping, step_s);
@@ -81,20 +89,8 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
   }
   if (stepping) blocked_s_ = blocked ? blocked_s_ + step_s : larger(0.0, blocked_s_ - step_s);
 
-  distribute_forces(state);
-  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    LegStatus& status = legs_[leg];
-    if (status.mode == LegMode::kStance) {
-      command_stance(leg, state);
-    } else if (status.mode == LegMode::kSwing) {
-      command_foot(leg, state, evaluate(status.path, status.swing_progress, status.swing_s));
-    } else {
-      SwingPoint point;
-      point.position_O_m = status.anchor_O_m - Vector3(0.0, 0.0, status.searched_m);
-      point.velocity_O_m_s = Vector3(0.0, 0.0, -config_.swing.search_speed_m_s);
-      command_foot(leg, state, point);
-    }
-  }
+  plan_forces(state, plan);
+  control_body(state);
   return joints_;
 }
 
@@ -164,7 +160,7 @@ void Locomotion::try_swing(std::size_t leg, const estimation::RobotState& state,
   const Vector3 nominal =
       footholds_.nominal_O_m(leg, state, command_, gait_.legs()[leg].remaining_s,
                              gait_.config().stance_s(), reference_.ground_z_m);
-  status.foothold = footholds_.choose(nominal, window);
+  status.foothold = footholds_.choose(nominal, window, unseen_);
   if (status.foothold.reason == FootholdReason::kNone) {
     status.skipped_swing = true;
     return;
@@ -185,7 +181,7 @@ void Locomotion::follow_foothold(std::size_t leg, const estimation::RobotState& 
   const Vector3 nominal =
       footholds_.nominal_O_m(leg, state, command_, gait_.legs()[leg].remaining_s,
                              gait_.config().stance_s(), reference_.ground_z_m);
-  const Foothold next = footholds_.choose(nominal, window);
+  const Foothold next = footholds_.choose(nominal, window, unseen_);
   if (next.reason == FootholdReason::kNone) return;
   status.foothold = next;
   set_path(leg, window);
@@ -205,67 +201,74 @@ void Locomotion::set_path(std::size_t leg, const mapping::MapWindow* window) {
   path.apex_O_m = highest + config_.swing.clearance_m;
 }
 
-void Locomotion::distribute_forces(const estimation::RobotState& state) {
-  ForceProblem problem;
-  problem.wrench_O = tracker_.wrench_O(state);
-  const Vector3 centre_to_contact(0.0, 0.0, -model_.foot_radius_m);
+void Locomotion::plan(const estimation::RobotState& state, MpcProblem& problem) const {
+  plan_horizon({model_, config_, state, reference_, command_, gait_, gait_running_, legs_},
+               problem);
+}
+
+// The forces that the predictive controller wants now, of the feet that stand. Before its first
+// plan the feet share the weight.
+void Locomotion::plan_forces(const estimation::RobotState& state, const ForcePlan& plan) {
+  double standing = 0;
+  for (const LegStatus& leg : legs_) standing += leg.mode == LegMode::kStance ? 1.0 : 0.0;
+  const double age_s = (state.stamp - plan.stamp).seconds();
+  constexpr double kLast = static_cast<double>(kMpcHorizon - 1);
+  const auto k = static_cast<std::size_t>(math::clamp(age_s / config_.mpc.step_s, 0.0, kLast));
+  const double share_N = model_.total_mass_kg() * kGravity_m_s2 / larger(standing, 1.0);
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    problem.lever_O_m[leg] = state.R_OB * state.feet[leg].p_B_m + centre_to_contact;
-    problem.in_contact[leg] = legs_[leg].mode == LegMode::kStance;
-  }
-  const ForceSolution& solution = forces_.solve(problem);
-  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    legs_[leg].force_O_N = solution.force_O_N[leg];
+    Vector3& force = legs_[leg].force_O_N;
+    force.setZero();
+    if (legs_[leg].mode != LegMode::kStance) continue;
+    force = plan.valid ? plan.solution.force_O_N[k][leg] : Vector3(0.0, 0.0, share_N);
   }
 }
 
-void Locomotion::command_stance(std::size_t leg, const estimation::RobotState& state) {
-  const estimation::FootState& foot = state.feet[leg];
-  const Vector3 force_B = state.R_OB.transpose() * legs_[leg].force_O_N;
-  const Vector3 torque = -(foot.jacobian_B.transpose() * force_B);
-  // Damping is about the motion the body should make, not about standing still.
-  const Vector3 rate_B(0.0, 0.0, reference_.yaw_rate_rad_s);
-  const Vector3 foot_velocity_B =
-      -(state.R_OB.transpose() * reference_.v_OB_m_s) - rate_B.cross(foot.p_B_m);
-  Vector3 qd = Vector3::Zero();
-  const double determinant = foot.jacobian_B.determinant();
-  if (determinant > kSmallestDeterminant_m3 || determinant < -kSmallestDeterminant_m3) {
-    qd = foot.jacobian_B.inverse() * foot_velocity_B;
+// Of a foot in the air.
+SwingPoint Locomotion::foot_target(std::size_t leg) const {
+  const LegStatus& status = legs_[leg];
+  if (status.mode == LegMode::kSwing) {
+    return evaluate(status.path, status.swing_progress, status.swing_s);
   }
-  for (std::size_t i = 0; i < robot::kJointsPerLeg; ++i) {
-    const std::size_t joint = robot::joint_index(leg, i);
+  SwingPoint point;
+  point.position_O_m = status.anchor_O_m - Vector3(0.0, 0.0, status.searched_m);
+  point.velocity_O_m_s = Vector3(0.0, 0.0, -config_.swing.search_speed_m_s);
+  return point;
+}
+
+void Locomotion::control_body(const estimation::RobotState& state) {
+  BodyTask body;
+  body.p_OB_m = reference_.p_OB_m;
+  body.v_OB_m_s = reference_.v_OB_m_s;
+  body.R_OB =
+      geometry::from_roll_pitch_yaw(reference_.roll_rad, reference_.pitch_rad, reference_.yaw_rad);
+  body.angular_velocity_O_rad_s = Vector3(0.0, 0.0, reference_.yaw_rate_rad_s);
+  LegTasks tasks;
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    LegTask& task = tasks[leg];
+    task.in_contact = legs_[leg].mode == LegMode::kStance;
+    task.force_O_N = legs_[leg].force_O_N;
+    if (task.in_contact) continue;
+    const SwingPoint target = foot_target(leg);
+    task.position_O_m = target.position_O_m;
+    task.velocity_O_m_s = target.velocity_O_m_s;
+    task.acceleration_O_m_s2 = target.acceleration_O_m_s2;
+  }
+  const WholeBodyCommand& wanted = whole_body_.update(whole_body_state(state), body, tasks);
+  for (std::size_t joint = 0; joint < robot::kJoints; ++joint) {
+    const auto row = static_cast<Eigen::Index>(joint);
+    const std::size_t leg = joint / robot::kJointsPerLeg;
+    const std::size_t i = joint % robot::kJointsPerLeg;
+    const bool stands = tasks[leg].in_contact;
     actuation::JointCommand& command = joints_[joint];
-    command = actuation::JointCommand{};
-    command.position_rad = state.joints[joint].position_rad;
-    command.velocity_rad_s = qd[static_cast<Eigen::Index>(i)];
-    command.kd_Nm_s_rad = config_.force.stance_kd_Nm_s_rad;
-    command.torque_Nm = torque[static_cast<Eigen::Index>(i)];
+    command.position_rad = wanted.q_rad[row];
+    command.velocity_rad_s = wanted.qd_rad_s[row];
+    command.torque_Nm = wanted.torque_Nm[row];
+    command.kp_Nm_rad = stands ? config_.whole_body.joint_kp_Nm_rad[i] : config_.swing.kp_Nm_rad[i];
+    command.kd_Nm_s_rad =
+        stands ? config_.whole_body.joint_kd_Nm_s_rad[i] : config_.swing.kd_Nm_s_rad[i];
   }
-}
-
-// Joint stiffness towards a foot position and velocity given in O.
-void Locomotion::command_foot(std::size_t leg, const estimation::RobotState& state,
-                              const SwingPoint& target) {
-  const Vector3 p_B = state.R_OB.transpose() * (target.position_O_m - state.p_OB_m);
-  const Vector3 v_B = state.R_OB.transpose() * (target.velocity_O_m_s - state.v_OB_m_s) -
-                      state.angular_velocity_B_rad_s.cross(p_B);
-  const robot::LegSolution solution = robot::solve_leg(model_, leg, p_B);
-  const Matrix3 jacobian = robot::foot_jacobian_B(model_, leg, solution.q_rad);
-  Vector3 qd = Vector3::Zero();
-  const double determinant = jacobian.determinant();
-  if (determinant > kSmallestDeterminant_m3 || determinant < -kSmallestDeterminant_m3) {
-    qd = jacobian.inverse() * v_B;
-  }
-  for (std::size_t i = 0; i < robot::kJointsPerLeg; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    const robot::Actuator& actuator = model_.actuators[i];
-    actuation::JointCommand& command = joints_[robot::joint_index(leg, i)];
-    command = actuation::JointCommand{};
-    command.position_rad = solution.q_rad[row];
-    command.velocity_rad_s =
-        math::clamp(qd[row], -actuator.no_load_speed_rad_s, actuator.no_load_speed_rad_s);
-    command.kp_Nm_rad = config_.swing.kp_Nm_rad[i];
-    command.kd_Nm_s_rad = config_.swing.kd_Nm_s_rad[i];
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    legs_[leg].force_O_N = wanted.force_O_N[leg];
   }
 }
 

@@ -20,29 +20,21 @@
 #include "core/control/body_reference.h"
 #include "core/control/config.h"
 #include "core/control/foothold.h"
-#include "core/control/force_distribution.h"
 #include "core/control/gait.h"
+#include "core/control/horizon_plan.h"
+#include "core/control/leg_status.h"
 #include "core/control/swing.h"
+#include "core/control/whole_body.h"
 #include "core/estimation/estimator.h"
 #include "core/mapping/map_window.h"
 #include "core/robot/robot_model.h"
 
 namespace surefoot::control {
 
-enum class LegMode : std::uint8_t { kStance = 0, kSwing, kSearch };
-
-struct LegStatus {
-  LegMode mode = LegMode::kStance;
-  double swing_progress = 0;
-  double swing_s = 0;  // duration of the swing under way
-  SwingPath path;
-  Foothold foothold;
-  double height_above_landing_m = 0;     // of the foot, while it swings
-  double searched_m = 0;                 // depth below the expected landing
-  Vector3 anchor_O_m = Vector3::Zero();  // where a search began
-  Vector3 force_O_N = Vector3::Zero();   // commanded, ground on foot
-  bool skipped_swing = false;            // no foothold: stays in stance during this planned swing
-  bool landed_early = false;             // touched down before the planned end of this swing
+struct WalkCommand {
+  VelocityCommand velocity;
+  GaitKind gait = GaitKind::kStand;
+  UnseenGround unseen = UnseenGround::kRefused;  // while nothing forces a step
 };
 
 class Locomotion {
@@ -52,12 +44,14 @@ class Locomotion {
   // All legs in stance at the present pose: call once when stand-up is done.
   void start(const estimation::RobotState& state);
 
-  // gait: kStand holds the robot in four-legged stance (swings under way are finished); a change
-  // of gait takes place where the present cycle ends.
+  // command.gait: kStand holds the robot in four-legged stance (swings under way are finished); a
+  // change of gait takes place where the present cycle ends.
   const actuation::JointCommands& update(const estimation::RobotState& state,
                                          const mapping::MapWindow* window,
-                                         const VelocityCommand& command, GaitKind gait,
+                                         const WalkCommand& command, const ForcePlan& plan,
                                          double step_s);
+  // What the predictive controller should solve next, from the last update on.
+  void plan(const estimation::RobotState& state, MpcProblem& problem) const;
 
   const std::array<LegStatus, robot::kLegs>& legs() const { return legs_; }
   // What the contact estimator needs to know of the plan.
@@ -76,18 +70,19 @@ class Locomotion {
   void follow_foothold(std::size_t leg, const estimation::RobotState& state,
                        const mapping::MapWindow* window);
   void set_path(std::size_t leg, const mapping::MapWindow* window);
-  void distribute_forces(const estimation::RobotState& state);
-  void command_stance(std::size_t leg, const estimation::RobotState& state);
-  void command_foot(std::size_t leg, const estimation::RobotState& state, const SwingPoint& target);
+  void plan_forces(const estimation::RobotState& state, const ForcePlan& plan);
+  SwingPoint foot_target(std::size_t leg) const;
+  void control_body(const estimation::RobotState& state);
 
   ControlConfig config_;
   robot::RobotModel model_;
   Gait gait_;
   FootholdPlanner footholds_;
-  ForceDistribution forces_;
   BodyReferenceTracker tracker_;
   BodyReference reference_;
+  WholeBody whole_body_;
   VelocityCommand command_;  // ramped
+  UnseenGround unseen_ = UnseenGround::kRefused;
   bool gait_running_ = false;
   double blocked_s_ = 0;
   std::array<LegStatus, robot::kLegs> legs_;

@@ -7,7 +7,8 @@ namespace {
 
 struct Blend {
   double value;
-  double slope;  // per unit of progress
+  double slope;      // per unit of progress
+  double curvature;  // per unit of progress squared
 };
 
 // Quintic from 0 at `begin` to 1 at `end`.
@@ -16,7 +17,8 @@ Blend quintic(double progress, double begin, double end) {
   const double s = math::clamp((progress - begin) / width, 0.0, 1.0);
   const double value = s * s * s * (10.0 + s * (6.0 * s - 15.0));
   const double slope = 30.0 * s * s * (1.0 - s) * (1.0 - s) / width;
-  return {value, slope};
+  const double curvature = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / (width * width);
+  return {value, slope, curvature};
 }
 
 }  // namespace
@@ -32,8 +34,11 @@ SwingPoint evaluate(const SwingPath& path, double progress, double duration_s) {
   SwingPoint point;
   point.position_O_m = path.lift_off_O_m + way * over.value;
   point.velocity_O_m_s = way * (over.slope / duration_s);
+  point.acceleration_O_m_s2 = way * (over.curvature / math::square(duration_s));
   point.position_O_m[2] = path.lift_off_O_m[2] + rise_m * rise.value + fall_m * fall.value;
   point.velocity_O_m_s[2] = (rise_m * rise.slope + fall_m * fall.slope) / duration_s;
+  point.acceleration_O_m_s2[2] =
+      (rise_m * rise.curvature + fall_m * fall.curvature) / math::square(duration_s);
   return point;
 }
 

@@ -18,6 +18,7 @@ struct SwingPath {
 struct SwingPoint {
   Vector3 position_O_m = Vector3::Zero();
   Vector3 velocity_O_m_s = Vector3::Zero();
+  Vector3 acceleration_O_m_s2 = Vector3::Zero();
 };
 
 // progress in [0, 1], clamped.

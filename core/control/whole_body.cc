@@ -5,6 +5,7 @@
 #include "core/control/friction_pyramid.h"
 #include "core/geometry/rotations.h"
 #include "core/math/elementary.h"
+#include "core/math/gravity.h"
 
 namespace surefoot::control {
 namespace {
@@ -13,7 +14,6 @@ using robot::GeneralisedVector;
 using robot::kLegs;
 using robot::velocity_row;
 
-constexpr double kGravity_m_s2 = 9.81;
 constexpr double kLargestAngle_rad = 100.0;  // beyond any joint's turns
 constexpr double kLargestNumber = 1e6;       // in any unit of a task
 constexpr double kLargestResult = 1e30;

@@ -24,7 +24,7 @@
 // motion hold with these as well. A singular foot Jacobian (straight knee) damps what is commanded
 // in the lost direction (`damped`).
 //
-// Memory: sizeof(WholeBody) about 16 kB. Cost: no branch on data beyond contacts; tests/timing,
+// Memory: sizeof(WholeBody) 20 kB. Cost: no branch on data beyond contacts; tests/timing,
 // cases whole_body_*.
 #pragma once
 

@@ -1,10 +1,10 @@
-// Which feet bear load: ground forces from the joint torques, judged together with the gait's phase.
+// Which feet bear load: ground forces from the joint torques, judged together with the gait.
 //
 // A torque command alone proves nothing (a leg pushing into the air reports the torque too). The
 // torques that the motion needs without the ground come from the dynamics of the whole robot
-// (robot/dynamics.h), with measured accelerations: joints by difference, trunk from the IMU. What is
-// missing came through the feet. First-order low-pass: this is the residual of the momentum observer
-// (De Luca and Mattone, ICRA 2003), M nu' + C nu + g - tau instead of its integral.
+// (robot/dynamics.h) with measured accelerations: joints by difference, trunk from the IMU. What
+// is missing came through the feet. First-order low-pass: this is the residual of the momentum
+// observer (De Luca and Mattone, ICRA 2003), of M nu' + C nu + g - tau instead of its integral.
 //
 // A touchdown also needs the foot to have stopped sinking, and far above the expected ground it
 // takes a larger force (surprise_force_N): something unmapped was hit.

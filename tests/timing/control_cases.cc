@@ -45,7 +45,7 @@ class Standing final : public WorkCase {
 // A whole period of the trot, so that each leg lifts, swings and lands once.
 class Trot final : public WorkCase {
  public:
-  static constexpr std::size_t kPeriod_ticks = 200;
+  static constexpr std::size_t kPeriod_ticks = 150;
 
   bool prepare(std::size_t round) override {
     if (round == 0) {
@@ -62,7 +62,7 @@ class Trot final : public WorkCase {
   void run() override { robot_.run(); }
   bool did_the_work() override {
     const bool walking = robot_.telemetry().phase == MissionPhase::kWalk;
-    const auto moved = [](std::size_t ticks) { return ticks > 50 && ticks < 150; };
+    const auto moved = [](std::size_t ticks) { return ticks > 38 && ticks < 112; };
     return walking && std::all_of(swing_ticks_.begin(), swing_ticks_.end(), moved) &&
            std::all_of(contact_ticks_.begin(), contact_ticks_.end(), moved);
   }
@@ -137,7 +137,7 @@ std::unique_ptr<WorkCase> make() {
 
 const WorkEntry kControlCases[] = {
     {"control_standing", "control task, four feet on the ground", make<Standing>},
-    {"control_trot", "control task, 200 ticks: one period of the trot", make<Trot>},
+    {"control_trot", "control task, 150 ticks: one period of the trot", make<Trot>},
     {"control_worst",
      "control task, four foothold searches without success, 64 CAN frames, 16 IMU samples",
      make<AllLift>},

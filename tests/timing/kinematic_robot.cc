@@ -9,6 +9,8 @@ namespace surefoot::timing {
 namespace {
 
 constexpr double kGravity_m_s2 = 9.81;
+constexpr double kSoft_Nm_rad = 20.0;
+constexpr double kCreep_1_s = 10.0;
 constexpr double kGroundTolerance_m = 0.004;  // feet this near the lowest stand too
 
 Vector3 joints_of(const std::array<double, robot::kJoints>& values, std::size_t leg) {
@@ -27,6 +29,7 @@ KinematicRobot::KinematicRobot(const apps::Config& config) : model_(config.robot
       q_rad_[robot::joint_index(leg, i)] = folded[i];
     }
   }
+  dynamics_.reset(model_);
   feel_ground();
 }
 
@@ -78,17 +81,31 @@ void KinematicRobot::apply() {
     actuation::JointCommand command;
     if (!ok(bus_.decode_command_frame(frame, joint, command))) continue;
     const double before = q_rad_[joint];
-    // Under stiffness a joint is where it should be; without, it moves as it should.
-    q_rad_[joint] =
-        command.kp_Nm_rad > 0 ? command.position_rad : before + command.velocity_rad_s * step_s;
+    // A stiff joint is where it should be; the soft one of a standing leg moves as it should and
+    // creeps towards where it should be.
+    const double creep_rad_s = kCreep_1_s * (command.position_rad - before);
+    q_rad_[joint] = command.kp_Nm_rad > kSoft_Nm_rad
+                        ? command.position_rad
+                        : before + (command.velocity_rad_s + creep_rad_s) * step_s;
+    const double speed_before_rad_s = qd_rad_s_[joint];
     qd_rad_s_[joint] = (q_rad_[joint] - before) / step_s;
+    acceleration_[6 + static_cast<Eigen::Index>(joint)] =
+        (qd_rad_s_[joint] - speed_before_rad_s) / step_s;
   }
   feel_ground();
   ++inputs_.tick;
 }
 
-// The lowest feet share the weight; their joints report the torque that holds it.
+// The lowest feet share the weight; the joints report the torque that holds it and moves the legs.
 void KinematicRobot::feel_ground() {
+  robot::MotionState motion;
+  for (std::size_t joint = 0; joint < robot::kJoints; ++joint) {
+    const auto row = static_cast<Eigen::Index>(joint);
+    motion.q_rad[row] = q_rad_[joint];
+    motion.velocity[6 + row] = qd_rad_s_[joint];
+  }
+  dynamics_.update(motion);
+  const robot::JointVector moving_Nm = dynamics_.inverse_dynamics(acceleration_).tail<12>();
   std::array<Vector3, robot::kLegs> feet;
   double lowest = 0;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
@@ -102,9 +119,13 @@ void KinematicRobot::feel_ground() {
     const bool stands = feet[leg][2] < lowest + kGroundTolerance_m;
     const double share = stands ? model_.total_mass_kg() * kGravity_m_s2 / standing : 0.0;
     const Matrix3 jacobian = robot::foot_jacobian_B(model_, leg, joints_of(q_rad_, leg));
-    const Vector3 torque = -(jacobian.transpose() * Vector3(0, 0, share));
+    const Vector3 holding_Nm = -(jacobian.transpose() * Vector3(0, 0, share));
     for (std::size_t i = 0; i < robot::kJointsPerLeg; ++i) {
-      torque_Nm_[robot::joint_index(leg, i)] = torque[static_cast<Eigen::Index>(i)];
+      const std::size_t joint = robot::joint_index(leg, i);
+      const double limit_Nm = model_.actuators[i].torque_limit_Nm;
+      torque_Nm_[joint] = std::clamp(
+          holding_Nm[static_cast<Eigen::Index>(i)] + moving_Nm[static_cast<Eigen::Index>(joint)],
+          -limit_Nm, limit_Nm);
     }
   }
 }

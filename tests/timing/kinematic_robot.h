@@ -49,6 +49,8 @@ class KinematicRobot {
   double height_m_ = 0;
   std::array<double, robot::kJoints> q_rad_{};
   std::array<double, robot::kJoints> qd_rad_s_{};
+  robot::Dynamics dynamics_;
+  robot::GeneralisedVector acceleration_ = robot::GeneralisedVector::Zero();
   std::array<double, robot::kJoints> torque_Nm_{};
 };
 

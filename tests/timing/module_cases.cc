@@ -3,7 +3,6 @@
 
 #include "core/autonomy/tick.h"
 #include "core/base/assert.h"
-#include "core/control/force_distribution.h"
 #include "core/control/locomotion.h"
 #include "core/estimation/estimator.h"
 #include "core/mapping/foothold.h"
@@ -29,34 +28,6 @@ void fill(mapping::MapWindow& window, double cell_size_m, mapping::Traversabilit
       traversability == mapping::Traversability::kSteppable ? mapping::kMaxMargin_cells : 0;
   window.cells.fill(cell);
 }
-
-// Four legs share a wrench that friction cannot give: every constraint is active.
-class ForceQp final : public WorkCase {
- public:
-  bool prepare(std::size_t round) override {
-    if (round > 0) return false;
-    const apps::Config config = load({});
-    forces_.reset(config.autonomy.control.force);
-    problem_.wrench_O << 150, -120, 90, 12, -9, 8;
-    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-      const double x = leg < 2 ? 0.19 : -0.19;
-      const double y = leg % 2 == 0 ? -0.11 : 0.11;
-      problem_.lever_O_m[leg] = Vector3(x, y, -0.29);
-      problem_.in_contact[leg] = true;
-    }
-    return true;
-  }
-  void run() override { solution_ = &forces_.solve(problem_); }
-  bool did_the_work() override {
-    return std::all_of(solution_->force_O_N.begin(), solution_->force_O_N.end(),
-                       [](const Vector3& force) { return force[2] > 0; });
-  }
-
- private:
-  control::ForceDistribution forces_;
-  control::ForceProblem problem_;
-  const control::ForceSolution* solution_ = nullptr;
-};
 
 // Sixteen IMU samples and four feet, which all stand; when `slip`, their joints turn as no standing
 // foot can, and the feet are left out.
@@ -199,7 +170,8 @@ class Retarget final : public WorkCase {
     }
   }
   void update() {
-    locomotion_.update(state_, &window_, {0.5, 0.0, 0.0}, control::GaitKind::kTrot, kStep_s);
+    const control::WalkCommand command{{0.5, 0.0, 0.0}, control::GaitKind::kPronk};
+    locomotion_.update(state_, &window_, command, control::ForcePlan{}, kStep_s);
   }
   bool all_swing() const {
     const auto& legs = locomotion_.legs();
@@ -237,7 +209,6 @@ std::unique_ptr<WorkCase> make() {
 }  // namespace
 
 const WorkEntry kModuleCases[] = {
-    {"force_qp", "force distribution, four feet, wrench out of reach", make<ForceQp>},
     {"estimator_standing", "state estimate, 16 IMU samples, four standing feet",
      make<Estimate<false>>},
     {"estimator_slipping", "the same, four slipping feet", make<Estimate<true>>},

@@ -1,7 +1,6 @@
 // Workloads of core/control.
 #include "core/base/random.h"
 #include "core/control/convex_mpc.h"
-#include "core/control/force_distribution.h"
 #include "core/control/gait.h"
 #include "core/control/swing.h"
 #include "core/control/whole_body.h"
@@ -32,34 +31,6 @@ void hash_swing(Fnv64& hash) {
     const control::SwingPoint point = control::evaluate(path, random.uniform(), 0.16);
     mix(hash, point.position_O_m);
     mix(hash, point.velocity_O_m_s);
-  }
-}
-
-void hash_force_distribution(Fnv64& hash) {
-  control::ForceConfig config;
-  config.friction = 0.5;
-  config.min_normal_N = 3;
-  config.max_normal_N = 150;
-  config.force_weight = {1, 1, 1};
-  config.moment_weight = {20, 20, 20};
-  config.effort_weight = 1e-3;
-  config.change_weight = 1e-3;
-  control::ForceDistribution forces;
-  forces.reset(config);
-  Random random(9);
-  for (int i = 0; i < 500; ++i) {
-    control::ForceProblem problem;
-    for (int axis = 0; axis < 6; ++axis) problem.wrench_O[axis] = random.uniform(-5, 5);
-    problem.wrench_O[2] += 88;
-    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-      const double x = robot::front_sign(leg) * 0.2 + random.uniform(-0.05, 0.05);
-      const double y = robot::left_sign(leg) * 0.11 + random.uniform(-0.05, 0.05);
-      problem.lever_O_m[leg] = {x, y, -0.28};
-      problem.in_contact[leg] = (i / 100) % 2 == 0 || leg == 0 || leg == 3;
-    }
-    const control::ForceSolution& solution = forces.solve(problem);
-    for (const Vector3& force : solution.force_O_N) mix(hash, force);
-    mix(hash, solution.residual_N);
   }
 }
 

@@ -22,7 +22,6 @@ constexpr Workload kWorkloads[] = {
     {"tracking", surefoot::tests::hash_tracking},
     {"mapping", surefoot::tests::hash_mapping},
     {"swing", surefoot::tests::hash_swing},
-    {"force_distribution", surefoot::tests::hash_force_distribution},
     {"convex_mpc", surefoot::tests::hash_convex_mpc},
     {"whole_body", surefoot::tests::hash_whole_body},
 };

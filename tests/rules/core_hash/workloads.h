@@ -32,7 +32,6 @@ void hash_attitude(Fnv64& hash);
 void hash_tracking(Fnv64& hash);
 void hash_mapping(Fnv64& hash);
 void hash_swing(Fnv64& hash);
-void hash_force_distribution(Fnv64& hash);
 void hash_convex_mpc(Fnv64& hash);
 void hash_whole_body(Fnv64& hash);
 

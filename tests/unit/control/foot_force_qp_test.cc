@@ -11,7 +11,7 @@
 #include <Eigen/Dense>
 
 #include "core/base/random.h"
-#include "core/control/force_distribution.h"
+#include "core/control/friction_pyramid.h"
 #include "tests/support/samples.h"
 
 namespace surefoot::control {
@@ -135,7 +135,8 @@ double natural_residual(const Problem& p, const Forces& f) {
       x.setZero();
       continue;
     }
-    x = project_onto_pyramid(x, p.limits.friction, p.limits.min_normal_N, p.limits.max_normal_N);
+    FrictionPyramid<double>(p.limits.friction)
+        .project(x[0], x[1], x[2], p.limits.min_normal_N, p.limits.max_normal_N);
   }
   return (stepped - f).norm();
 }

@@ -82,7 +82,8 @@ TEST(Footholds, StayWhereTheGroundIsGoodAndTakeItsHeight) {
   FootholdPlanner planner;
   planner.reset(config(), model());
   const auto window = window_with_band(9.0, 9.1);
-  const Foothold foothold = planner.choose(Vector3(1.0, 0.1, 0.5), window.get());
+  const Foothold foothold =
+      planner.choose(Vector3(1.0, 0.1, 0.5), window.get(), UnseenGround::kRefused);
   EXPECT_EQ(foothold.reason, FootholdReason::kNominal);
   EXPECT_EQ(foothold.position_O_m[0], 1.0);
   EXPECT_NEAR(foothold.position_O_m[2], 0.02 + 0.0175, 1e-6);
@@ -92,20 +93,39 @@ TEST(Footholds, MoveOffBadGroundByTheShorterWay) {
   FootholdPlanner planner;
   planner.reset(config(), model());
   const auto window = window_with_band(0.94, 1.02);
-  const Foothold foothold = planner.choose(Vector3(1.0, 0.1, 0.0), window.get());
+  const Foothold foothold =
+      planner.choose(Vector3(1.0, 0.1, 0.0), window.get(), UnseenGround::kRefused);
   EXPECT_EQ(foothold.reason, FootholdReason::kMoved);
   EXPECT_GT(foothold.position_O_m[0], 1.02);
   EXPECT_LT(foothold.position_O_m[0], 1.05);
+}
+
+// A trot that has to catch itself may step on ground that nobody has seen, never on bad ground that
+// was seen.
+TEST(Footholds, UnseenGroundIsTakenOnlyWhereAllowed) {
+  FootholdPlanner planner;
+  planner.reset(config(), model());
+  const auto window = window_with_band(0.8, 1.2);
+  const Foothold seen =
+      planner.choose(Vector3(1.0, 0.1, 0.0), window.get(), UnseenGround::kAllowed);
+  EXPECT_EQ(seen.reason, FootholdReason::kNone);
+  const Foothold unseen =
+      planner.choose(Vector3(9.0, 0.1, 0.0), window.get(), UnseenGround::kAllowed);
+  EXPECT_EQ(unseen.reason, FootholdReason::kUnseen);
+  EXPECT_EQ(unseen.position_O_m, Vector3(9.0, 0.1, 0.0));
 }
 
 TEST(Footholds, AreRefusedWhereNothingInReachBearsAFoot) {
   FootholdPlanner planner;
   planner.reset(config(), model());
   const auto window = window_with_band(0.8, 1.2);
-  EXPECT_EQ(planner.choose(Vector3(1.0, 0.1, 0.0), window.get()).reason, FootholdReason::kNone);
+  EXPECT_EQ(planner.choose(Vector3(1.0, 0.1, 0.0), window.get(), UnseenGround::kRefused).reason,
+            FootholdReason::kNone);
   // Outside the window nothing is known.
-  EXPECT_EQ(planner.choose(Vector3(9.0, 0.1, 0.0), window.get()).reason, FootholdReason::kNone);
-  EXPECT_EQ(planner.choose(Vector3(1.0, 0.1, 0.0), nullptr).reason, FootholdReason::kMapOff);
+  EXPECT_EQ(planner.choose(Vector3(9.0, 0.1, 0.0), window.get(), UnseenGround::kRefused).reason,
+            FootholdReason::kNone);
+  EXPECT_EQ(planner.choose(Vector3(1.0, 0.1, 0.0), nullptr, UnseenGround::kRefused).reason,
+            FootholdReason::kMapOff);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <Eigen/Dense>
 
 #include "core/base/random.h"
-#include "core/control/force_distribution.h"
+#include "core/control/friction_pyramid.h"
 #include "core/geometry/rotations.h"
 #include "core/robot/kinematics.h"
 #include "tests/support/samples.h"
@@ -327,7 +327,8 @@ TEST(WholeBody, AnUnsettledProgramFallsBackToTheReferenceForces) {
     if (control.counters().unsettled == 0) continue;
     ++unsettled;
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
-      const Vector3 expected = project_onto_pyramid(s.legs[leg].force_O_N, 0.4, 0.0, 150.0);
+      Vector3 expected = s.legs[leg].force_O_N;
+      FrictionPyramid<double>(0.4).project(expected[0], expected[1], expected[2], 0.0, 150.0);
       const double contact = s.legs[leg].in_contact ? 1.0 : 0.0;
       EXPECT_LT((command.force_O_N[leg] - contact * expected).norm(), 1e-12);
     }
