@@ -30,11 +30,30 @@ struct PushConfig {
   }
 };
 
+// How the robot is set down. folded: upright on its folded legs. random_pose: trunk turned at
+// random (uniform over all rotations), joints anywhere between their stops, dropped limp from a
+// small height; it has come to rest when the run begins.
+struct StartConfig {
+  enum class Kind : std::uint8_t { kFolded = 0, kRandomPose };
+  static constexpr const char* kKindNames[] = {"folded", "random_pose"};
+
+  Kind kind = Kind::kFolded;
+  double x_m = 0;  // W, where the trunk is let go
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.choice("kind", self.kind, kKindNames, "how the robot is set down");
+    visit.real("x_m", self.x_m, {-1.0, 100.0}, "where, ahead of the world's origin");
+  }
+};
+
 struct ScenarioConfig {
+  StartConfig start;
   PushConfig push;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
+    visit.group("start", self.start);
     visit.group("push", self.push);
   }
 };

@@ -10,6 +10,7 @@
 #include "sim_hal/robot/contacts.h"
 #include "sim_hal/robot/ode_runtime.h"
 #include "sim_hal/robot/pushes.h"
+#include "sim_hal/robot/random_pose.h"
 #include "sim_hal/robot/sim_can_port.h"
 #include "sim_hal/sensors/sim_depth_camera_port.h"
 #include "sim_hal/sensors/sim_imu_port.h"
@@ -23,6 +24,22 @@ namespace {
 
 constexpr double kGravity_m_s2 = 9.81;
 constexpr double kSlipThreshold_m_s = 0.005;  // below: creep of the contact solver
+
+// A random start: let go at this clearance; at rest when slower than this for kQuiet_s.
+constexpr std::uint64_t kStartStream = 6;
+constexpr int kMaxPoseDraws = 1000;
+constexpr double kDropHeight_m = 0.02;
+constexpr double kMaxFall_s = 15.0;
+constexpr double kQuiet_s = 0.3;
+constexpr double kQuietJoint_rad_s = 0.02;
+constexpr double kQuietTrunk_rad_s = 0.002;
+
+// Under a robot that is set down at (x, 0), whichever way it lies.
+double highest_ground_m(const TerrainIndex& index, double x_m) {
+  constexpr double kReach_m = 0.6;
+  constexpr double kAcross_m = 0.5;
+  return std::max(0.0, index.max_height_m(x_m - kReach_m, -kAcross_m, x_m + kReach_m, kAcross_m));
+}
 
 std::array<double, 3> array(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -105,6 +122,7 @@ struct Simulator::Implementation final : hal::Clock {
         tracking(robot_model.tracking_camera, configuration.tracking, configuration.faults, seed,
                  robot.trunk_position_m(), robot.trunk_rotation()) {
     dWorldSetContactMaxCorrectingVel(ode.id(), configuration.physics.max_correcting_velocity_m_s);
+    set_down(seed);
     mount_velocity_W = robot.trunk_point_velocity_W(imu.mount_B_m());
     exchange_can();
   }
@@ -112,7 +130,10 @@ struct Simulator::Implementation final : hal::Clock {
   TimeNs do_now() const override { return now; }
   Status do_wait_until(TimeNs deadline) override;
 
+  void set_down(std::uint64_t seed);
+  void come_to_rest();
   void advance();
+  void step_bodies();
   void exchange_can();
   void advance_imu();
   void expose();
@@ -188,6 +209,49 @@ void Simulator::Implementation::track_slip() {
   }
 }
 
+void Simulator::Implementation::step_bodies() {
+  contacts.collide();
+  dWorldStep(ode.id(), step.seconds());
+  contacts.collect();
+  robot.update();
+}
+
+// Before the run begins. A draw in which the robot is inside itself is no pose.
+void Simulator::Implementation::set_down(std::uint64_t seed) {
+  const StartConfig& start = config.scenario.start;
+  if (start.kind == StartConfig::Kind::kFolded) {
+    if (start.x_m != 0.0) {
+      const Vector3 place = robot.trunk_position_m();
+      const double ground_m = highest_ground_m(index, start.x_m);
+      robot.set_down(robot.trunk_rotation(), robot.leg_angles_rad(), place.x() + start.x_m,
+                     place.y(), ground_m + config.start.drop_height_m);
+    }
+    return;
+  }
+  Random random(seed, kStartStream);
+  const double lowest_m = highest_ground_m(index, start.x_m) + kDropHeight_m;
+  for (int draw = 0; draw < kMaxPoseDraws; ++draw) {
+    const Matrix3 R_WB = random_rotation(random);
+    robot.set_down(R_WB, random_legs(robot.model(), random), start.x_m, 0.0, lowest_m);
+    if (contacts.self_overlap_m() == 0.0) break;
+  }
+  come_to_rest();
+}
+
+// Limp, drives off, until nothing has moved for a while.
+void Simulator::Implementation::come_to_rest() {
+  double quiet_s = 0;
+  const auto most = static_cast<int>(kMaxFall_s / step.seconds());
+  for (int i = 0; i < most && quiet_s < kQuiet_s; ++i) {
+    robot.apply({});
+    step_bodies();
+    quiet_s = robot.fastest_joint_rad_s() < kQuietJoint_rad_s &&
+                      robot.trunk_angular_velocity_W().norm() < kQuietTrunk_rad_s
+                  ? quiet_s + step.seconds()
+                  : 0.0;
+  }
+}
+
 // One physics step: torques from the drives at `now`, then everything that happens by now + step.
 void Simulator::Implementation::advance() {
   torques_Nm = can.torques_Nm(now);
@@ -199,10 +263,7 @@ void Simulator::Implementation::advance() {
     const Vector3 p = robot.trunk_position_m();
     dBodyAddForceAtPos(robot.body(0), force.x(), force.y(), force.z(), p.x(), p.y(), p.z());
   }
-  contacts.collide();
-  dWorldStep(ode.id(), step.seconds());
-  contacts.collect();
-  robot.update();
+  step_bodies();
   ++steps;
   now = now + step;
   track_slip();
@@ -328,6 +389,7 @@ SimulatorCounters Simulator::counters() const {
   counters.imu_samples_lost = sim.imu.lost();
   counters.pose_samples_lost = sim.tracking.pose_counters().lost;
   counters.pose_jumps = sim.tracking.pose_counters().jumps;
+  counters.deepest_self_overlap_m = sim.contacts.deepest_self_overlap_m();
   return counters;
 }
 

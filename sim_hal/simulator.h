@@ -80,6 +80,7 @@ struct SimulatorCounters {
   std::uint64_t imu_samples_lost = 0;
   std::uint64_t pose_samples_lost = 0;
   std::uint64_t pose_jumps = 0;
+  double deepest_self_overlap_m = 0;  // of two parts of the robot that touched each other
 };
 
 class Simulator {

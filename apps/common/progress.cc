@@ -10,6 +10,7 @@ namespace surefoot::apps {
 const char* to_string(autonomy::MissionPhase phase) {
   switch (phase) {
     case autonomy::MissionPhase::kEnableDrives: return "enable drives";
+    case autonomy::MissionPhase::kRecover: return "recover";
     case autonomy::MissionPhase::kStandUp: return "stand up";
     case autonomy::MissionPhase::kSettle: return "settle";
     case autonomy::MissionPhase::kWalk: return "walk";

@@ -39,6 +39,7 @@ const char* describe(StopReason reason) {
     case StopReason::kOperator: return "emergency stop by the operator";
     case StopReason::kMissionTimeout: return "the mission's time is over";
     case StopReason::kDriveFault: return "a drive reported an error";
+    case StopReason::kRecoveryFailed: return "fell, and no roll brought it back on its belly";
   }
   return "";
 }
@@ -49,7 +50,8 @@ Outcome outcome_of(StopReason reason) {
   switch (reason) {
     case StopReason::kNoFoothold: return Outcome::kNoPath;
     case StopReason::kMissionTimeout: return Outcome::kTimeout;
-    case StopReason::kTilt: return Outcome::kFall;
+    case StopReason::kTilt:
+    case StopReason::kRecoveryFailed: return Outcome::kFall;
     case StopReason::kDriveSilent:
     case StopReason::kImuSilent:
     case StopReason::kDriveFault: return Outcome::kFault;
@@ -68,11 +70,24 @@ void Referee::end(Outcome outcome, std::string reason) {
   ended_ = {outcome, std::move(reason)};
 }
 
+// Where the robot may get up again, each fall from standing counts once.
+void Referee::fall(std::string reason) {
+  if (!rules_.may_recover) return end(Outcome::kFall, std::move(reason));
+  if (!was_up_) return;
+  ++falls_;
+  was_up_ = false;
+  is_down_ = true;
+  fall_reason_ = std::move(reason);
+}
+
 void Referee::observe(TimeNs stamp, const autonomy::Telemetry& telemetry, const sim::Truth& truth) {
   phase_ = telemetry.phase;
   stop_reason_ = telemetry.stop_reason;
   p_WB_m_ = truth.p_WB_m;
-  if (phase_ >= MissionPhase::kSettle && phase_ <= MissionPhase::kArrived) was_up_ = true;
+  if (phase_ == MissionPhase::kRecover || phase_ == MissionPhase::kStandUp) is_down_ = false;
+  const bool on_feet = phase_ >= MissionPhase::kSettle && phase_ <= MissionPhase::kArrived;
+  was_up_ = was_up_ || (on_feet && !is_down_);
+  if (!on_feet && rules_.may_recover) was_up_ = false;
   if (phase_ == MissionPhase::kStopped && stop_reason_ == StopReason::kTilt) {
     end(Outcome::kFall, describe(stop_reason_));
   }
@@ -80,14 +95,13 @@ void Referee::observe(TimeNs stamp, const autonomy::Telemetry& telemetry, const 
   if (!rules_.has_truth || phase_ == MissionPhase::kStopped) return;
   const double tilt = tilt_of(truth.q_WB_wxyz);
   if (tilt > rules_.fall_tilt_rad) {
-    end(Outcome::kFall,
-        fmt::format("tilted {:.0f} degrees at x = {:.2f} m", tilt * 57.29578, p_WB_m_[0]));
+    fall(fmt::format("tilted {:.0f} degrees at x = {:.2f} m", tilt * 57.29578, p_WB_m_[0]));
   }
   if (!was_up_) return;
   if (truth.trunk_contact && !trunk_down_) trunk_down_since_ = stamp;
   trunk_down_ = truth.trunk_contact;
   if (trunk_down_ && (stamp - trunk_down_since_).seconds() >= rules_.fall_contact_s) {
-    end(Outcome::kFall, fmt::format("trunk on the ground at x = {:.2f} m", p_WB_m_[0]));
+    fall(fmt::format("trunk on the ground at x = {:.2f} m", p_WB_m_[0]));
   }
   if (rules_.lane_half_width_m > 0 && std::fabs(p_WB_m_[1]) > rules_.lane_half_width_m) {
     end(Outcome::kAborted, fmt::format("left the lane at x = {:.2f} m", p_WB_m_[0]));
@@ -107,6 +121,7 @@ Verdict Referee::verdict_at_goal() const {
 
 Verdict Referee::verdict() const {
   if (over_) return ended_;
+  if (is_down_) return {Outcome::kFall, fall_reason_ + ", and did not notice"};
   if (phase_ == MissionPhase::kStopped) return {outcome_of(stop_reason_), describe(stop_reason_)};
   if (phase_ == MissionPhase::kArrived) return verdict_at_goal();
   return {Outcome::kAborted, "the run ended before the mission did"};

@@ -33,6 +33,7 @@ struct RefereeRules {
   double lane_half_width_m = 0;      // 0: no lane
   double fall_tilt_rad = 1.0471976;  // 60 degrees
   double fall_contact_s = 0.2;       // trunk on the ground without a break
+  bool may_recover = false;          // a fall is counted and the run goes on
 };
 
 struct Verdict {
@@ -46,13 +47,14 @@ class Referee {
 
   // Every sample of a run, in order.
   void observe(TimeNs stamp, const autonomy::Telemetry& telemetry, const sim::Truth& truth);
-  // A fall or a line crossed: the run ends here.
+  // A fall that ends the mission or a line crossed: the run ends here.
   bool over() const { return over_; }
   int falls() const { return falls_; }
   // After the last sample.
   Verdict verdict() const;
 
  private:
+  void fall(std::string reason);
   void end(Outcome outcome, std::string reason);
   Verdict verdict_at_goal() const;
 
@@ -60,7 +62,9 @@ class Referee {
   bool over_ = false;
   int falls_ = 0;
   Verdict ended_;
-  bool was_up_ = false;  // the robot stood: before that the trunk lies on the ground
+  bool was_up_ = false;   // the robot stood: before that the trunk lies on the ground
+  bool is_down_ = false;  // fell, and has not stood up again
+  std::string fall_reason_;
   bool trunk_down_ = false;
   TimeNs trunk_down_since_;
   autonomy::MissionPhase phase_ = autonomy::MissionPhase::kEnableDrives;

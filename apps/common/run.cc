@@ -47,6 +47,7 @@ RefereeRules rules_for(const Config& config, bool has_truth) {
   rules.has_truth = has_truth;
   rules.has_goal = goal_x_m(config) >= 0;
   rules.goal_x_m = goal_x_m(config);
+  rules.may_recover = config.autonomy.mission.recover;
   rules.lane_half_width_m = lane_half_width_m(config);
   return rules;
 }
@@ -152,6 +153,7 @@ class Run {
     facts_.sim_time_s = static_cast<double>(executive.ticks()) * autonomy::kTickPeriod.seconds();
     facts_.wall_time_s = loop.wall_time_s;
     facts_.measures = measure(*log_, goal_x_m(config_));
+    facts_.measures.recovery = recovery_figures();
     facts_.terrain = backend_->terrain();
     if (backend_->has_truth()) {
       facts_.map = map_error(stack_.autonomy().map().mapper(), align_at_start(*log_), *log_,
@@ -169,6 +171,15 @@ class Run {
     facts_.samples_dropped = log_->dropped();
     facts_.counters = executive.counters();
     facts_.tracking = stack_.autonomy().estimator().drift().counters();
+  }
+
+  RecoveryFigures recovery_figures() const {
+    std::array<double, robot::kJoints> limit_Nm{};
+    for (std::size_t i = 0; i < robot::kJoints; ++i) {
+      limit_Nm[i] = config_.robot.actuators[i % robot::kJointsPerLeg].torque_limit_Nm;
+    }
+    const double height_m = config_.autonomy.control.body.height_m - config_.robot.foot_radius_m;
+    return measure_recovery(*log_, height_m, limit_Nm);
   }
 
   TrueGround ground() const {

@@ -30,9 +30,9 @@ std::size_t RunLog::walk_begin() const {
 }
 
 std::size_t RunLog::walk_end() const {
-  std::size_t end = walk_begin();
-  while (end < samples_.size() && samples_[end].telemetry.phase == MissionPhase::kWalk) ++end;
-  return end;
+  std::size_t end = samples_.size();
+  while (end > 0 && samples_[end - 1].telemetry.phase != MissionPhase::kWalk) --end;
+  return end == 0 ? samples_.size() : end;
 }
 
 std::vector<Touchdown> RunLog::touchdowns() const {

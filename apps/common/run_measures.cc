@@ -145,7 +145,50 @@ EstimateErrors estimate_errors(const RunLog& log, std::size_t begin, std::size_t
   return errors;
 }
 
+// Up is what looks like it, not what the robot believes.
+bool is_up(const sim::Truth& truth, double standing_height_m) {
+  constexpr double kTilt_rad = 0.3;
+  constexpr double kHeightShare = 0.8;
+  double feet_m = 0;
+  for (const sim::FootTruth& foot : truth.feet) feet_m += foot.p_WF_m[2] / robot::kLegs;
+  return tilt_of(truth.q_WB_wxyz) < kTilt_rad && !truth.trunk_contact &&
+         truth.p_WB_m[2] - feet_m > kHeightShare * standing_height_m;
+}
+
 }  // namespace
+
+RecoveryFigures measure_recovery(const RunLog& log, double standing_height_m,
+                                 const std::array<double, robot::kJoints>& torque_limit_Nm) {
+  constexpr double kHold_s = 0.5;
+  RecoveryFigures figures;
+  if (!log.has_truth()) return figures;
+  bool down = false;
+  double down_since_s = 0;
+  double up_since_s = 0;
+  bool was_up = false;
+  for (const RunSample& sample : log.samples()) {
+    const double now_s = sample.stamp.seconds();
+    if (!down && sample.telemetry.phase == autonomy::MissionPhase::kRecover) {
+      down = true;
+      down_since_s = now_s;
+      was_up = false;
+      ++figures.count;
+    }
+    if (!down) continue;
+    for (std::size_t i = 0; i < robot::kJoints; ++i) {
+      const double share = std::fabs(sample.truth.joints[i].motor_torque_Nm) / torque_limit_Nm[i];
+      figures.max_torque_share = std::max(figures.max_torque_share, share);
+    }
+    const bool up = is_up(sample.truth, standing_height_m);
+    if (up && !was_up) up_since_s = now_s;
+    was_up = up;
+    if (!up || now_s - up_since_s < kHold_s) continue;
+    down = false;
+    ++figures.stood;
+    figures.time_to_stand_s = std::max(figures.time_to_stand_s, up_since_s - down_since_s);
+  }
+  return figures;
+}
 
 RunMeasures measure(const RunLog& log, double goal_x_m) {
   RunMeasures measures;

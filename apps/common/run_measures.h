@@ -2,6 +2,7 @@
 // them for users.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "apps/common/run_log.h"
@@ -23,6 +24,15 @@ struct SustainedSpeeds {
   double yaw_rate_rad_s = 0;
 };
 
+// Getting up, by the truth: from the first sample of phase kRecover until the trunk has been up, as
+// high and as level as standing, for half a second (that half second not counted).
+struct RecoveryFigures {
+  int count = 0;
+  int stood = 0;                // of these
+  double time_to_stand_s = 0;   // the longest of those that stood
+  double max_torque_share = 0;  // of a motor's torque limit, meanwhile
+};
+
 struct RunMeasures {
   double start_to_goal_m = 0;  // true place at the first step to the goal; 0 without a goal
   double walk_s = 0;           // from the first sample of walking to the last
@@ -32,9 +42,14 @@ struct RunMeasures {
   std::uint64_t collisions = 0;  // times that trunk, thigh or shank came to touch the ground
   SustainedSpeeds sustained;     // zero for walks shorter than 5 s
   EstimateErrors estimate;       // zero without truth
+  RecoveryFigures recovery;      // zero without truth
 };
 
 // goal_x_m: in W, on y = 0; negative: none. Without truth the estimate stands in for it.
 RunMeasures measure(const RunLog& log, double goal_x_m);
+
+// standing_height_m: of the trunk over the feet's centres where the robot stands.
+RecoveryFigures measure_recovery(const RunLog& log, double standing_height_m,
+                                 const std::array<double, robot::kJoints>& torque_limit_Nm);
 
 }  // namespace surefoot::apps

@@ -65,6 +65,10 @@ Json summary_json(const RunFacts& facts) {
                        {"yaw_rate_rad_s", m.sustained.yaw_rate_rad_s}};
   json["collisions"] = m.collisions;
   json["falls"] = facts.falls;
+  json["recovery"] = {{"count", m.recovery.count},
+                      {"stood", m.recovery.stood},
+                      {"time_to_stand_s", m.recovery.time_to_stand_s},
+                      {"max_torque_share", m.recovery.max_torque_share}};
   json["foot_slips"] = m.foot_slips;
   json["terrain"] = {{"max_step_m", facts.terrain.max_step_m},
                      {"rms_m", facts.terrain.rms_m},

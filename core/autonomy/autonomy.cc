@@ -6,7 +6,19 @@
 namespace surefoot::autonomy {
 namespace {
 
+constexpr double kFolded_rad = 0.3;  // off the folded pose: too far to stand up from as it is
+constexpr double kForget_m = 1.5;    // around a robot that fell
+
 std::array<double, 3> to_array(const Vector3& v) { return {v[0], v[1], v[2]}; }
+
+// Of the trunk's origin over the mean of the feet's centres, along gravity.
+double height_over_feet_m(const estimation::RobotState& state) {
+  double height_m = 0;
+  for (const estimation::FootState& foot : state.feet) {
+    height_m -= (state.R_OB * foot.p_B_m)[2] / static_cast<double>(robot::kLegs);
+  }
+  return height_m;
+}
 
 }  // namespace
 
@@ -28,12 +40,16 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   estimator_.reset(config.estimation, model, tick_s_);
   history_.clear();
   mission_.reset(config.mission);
+  recovery_.reset(config.control.recovery, config.control.stand_up.folded_rad);
   stand_up_.reset(config.control.stand_up, model, config.control.body.height_m);
   locomotion_.reset(config.control, model);
   mpc_.reset(config.control.mpc);
   outputs_ = TickOutputs{};
   commands_ = actuation::JointCommands{};
   walking_ready_ = false;
+  has_stood_ = false;
+  footing_O_m_.setZero();
+  collapsed_s_ = 0;
   imu_silent_s_ = 0;
   imu_refused_ = 0;
   encode_refused_ = 0;
@@ -45,6 +61,10 @@ void Autonomy::run_control() {
   const estimation::RobotState& state = estimator_.state();
   MissionFacts facts;
   facts.drives_ready = bus_.all_valid() && estimator_.ready();
+  facts.must_recover = must_recover(state);
+  facts.fallen = has_fallen(state);
+  facts.recovered = recovery_.done();
+  facts.recovery_failed = recovery_.failed();
   facts.stand_up_done = stand_up_.done();
   facts.all_in_stance = locomotion_.all_in_stance();
   facts.fault = find_fault();
@@ -59,13 +79,17 @@ void Autonomy::receive() {
   bus_.receive({inputs_->can.data(), inputs_->can.size()});
   imu_silent_s_ = inputs_->imu.empty() ? imu_silent_s_ + tick_s_ : 0.0;
   // Only while nothing acts: a robot that balances on a biased gyro turns until the gyro reads
-  // zero.
+  // zero, and one that has just fallen still sinks.
+  const bool recovering = mission_.phase() == MissionPhase::kRecover;
   const bool still = mission_.phase() == MissionPhase::kEnableDrives;
   imu_refused_ += estimator_.update(inputs_->stamp, {inputs_->imu.data(), inputs_->imu.size()},
                                     bus_.states(), locomotion_.gait_phases(), still);
   // Folded on the ground no foot bears load: the accelerometer alone would carry the trunk away.
-  if (still) estimator_.place(Vector3::Zero());
-  if (walking_ready_) history_.push(estimator_.state());
+  if (still || recovering) estimator_.place(footing_O_m_);
+  if (walking_ready_) {
+    history_.push(estimator_.state());
+    note_footing(estimator_.state());
+  }
   receive_poses();
 }
 
@@ -89,8 +113,10 @@ StopReason Autonomy::find_fault() {
   if (mission_.phase() == MissionPhase::kEnableDrives) return StopReason::kNone;
   if (bus_.faulty_joints() != 0) return StopReason::kDriveFault;
   if (bus_.silent_joints() != 0) return StopReason::kDriveSilent;
+  if (mission_.phase() == MissionPhase::kRecover) return StopReason::kNone;
   const double cos_tilt = estimator_.state().R_OB(2, 2);
   if (cos_tilt < math::cos(config_.safety.max_tilt_rad)) return StopReason::kTilt;
+  if (!walking_ready_) return StopReason::kNone;
   if (locomotion_.blocked_s() > config_.safety.foothold_patience_s) return StopReason::kNoFoothold;
   return StopReason::kNone;
 }
@@ -99,28 +125,91 @@ const mapping::MapWindow* Autonomy::window() const {
   return config_.mapping.enabled ? &map_.window() : nullptr;
 }
 
-// Stand-up is over: O gets its place on the ground below the trunk, where the feet say that it is,
-// and the start pad enters the map.
-void Autonomy::begin_walking(const estimation::RobotState& state) {
-  double below_m = 0;  // of the feet's mean, from the trunk
-  for (const estimation::FootState& foot : state.feet) {
-    below_m -= (state.R_OB * foot.p_B_m)[2] / static_cast<double>(robot::kLegs);
+// It does not lie on its belly with folded legs: StandUp alone would not do.
+bool Autonomy::must_recover(const estimation::RobotState& state) const {
+  const control::RecoveryConfig& config = config_.control.recovery;
+  if (control::lie_of(state.R_OB, config.upright_tilt_rad) != control::Lie::kUpright) return true;
+  const std::array<double, 3>& folded = config_.control.stand_up.folded_rad;
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    for (std::size_t i = 0; i < robot::kJointsPerLeg; ++i) {
+      const double target = i == 0 ? robot::left_sign(leg) * folded[i] : folded[i];
+      const double off = state.joints[robot::joint_index(leg, i)].position_rad - target;
+      if (off > kFolded_rad || off < -kFolded_rad) return true;
+    }
   }
-  estimator_.place(Vector3(0.0, 0.0, below_m + model_.foot_radius_m));
+  return false;
+}
+
+// Tilted, or down on the belly with the feet beside it.
+bool Autonomy::has_fallen(const estimation::RobotState& state) {
+  const bool tilted = state.R_OB(2, 2) < math::cos(config_.safety.max_tilt_rad);
+  const control::RecoveryConfig& config = config_.control.recovery;
+  const bool low = walking_ready_ && height_over_feet_m(state) < config.collapsed_height_m;
+  collapsed_s_ = low ? collapsed_s_ + tick_s_ : 0.0;
+  return tilted || collapsed_s_ >= config.collapsed_s;
+}
+
+void Autonomy::note_footing(const estimation::RobotState& state) {
+  constexpr double kUprightCosine = 0.95;  // 18 degrees
+  if (state.R_OB(2, 2) < kUprightCosine) return;
+  double ground_m = 0;
+  int feet = 0;
+  for (const estimation::FootState& foot : state.feet) {
+    if (!foot.in_contact) continue;
+    ground_m += foot.p_O_m[2] - model_.foot_radius_m;
+    ++feet;
+  }
+  if (feet < 2) return;
+  footing_O_m_ = Vector3(state.p_OB_m[0], state.p_OB_m[1], ground_m / feet);
+}
+
+// How it fell is nothing that the legs have measured: the place is that of the last footing, the
+// heading that of the gyro, and the map waits until the robot stands.
+void Autonomy::recover(const estimation::RobotState& state) {
+  if (mission_.phase_changed()) {
+    if (walking_ready_) recovery_.begin();
+    recovery_.start();
+    walking_ready_ = false;
+    collapsed_s_ = 0;
+  }
+  commands_ = recovery_.update(state, tick_s_);
+}
+
+void Autonomy::start_stand_up() {
+  if (recovery_.done()) return stand_up_.start_folded();
+  stand_up_.start(bus_.states());
+}
+
+// Stand-up is over: O gets its place on the ground below the trunk, where the feet say that it is,
+// and the start pad enters the map. After a fall O stays as it was; the map around the robot is
+// off by as much as the robot slid, and is seen anew.
+void Autonomy::begin_walking(const estimation::RobotState& state) {
+  if (!has_stood_) estimator_.set_yaw(0.0);
+  estimator_.place(footing_O_m_ +
+                   Vector3(0.0, 0.0, height_over_feet_m(state) + model_.foot_radius_m));
   locomotion_.start(estimator_.state());
+  history_.clear();
   walking_ready_ = true;
   mapping::AssumedPad pad;
+  pad.x_O_m = footing_O_m_[0];
+  pad.y_O_m = footing_O_m_[1];
+  pad.z_O_m = footing_O_m_[2];
   pad.yaw_rad = state.yaw_rad;
   pad.half_length_m = 0.5 * config_.start_pad.length_m;
   pad.half_width_m = 0.5 * config_.start_pad.width_m;
-  if (config_.mapping.enabled) SUREFOOT_ASSERT(ok(map_.assume_pad(pad)));
+  const bool seen_before = has_stood_;
+  has_stood_ = true;
+  if (!config_.mapping.enabled) return;
+  if (seen_before) SUREFOOT_ASSERT(ok(map_.forget(pad.x_O_m, pad.y_O_m, kForget_m)));
+  SUREFOOT_ASSERT(ok(map_.assume_pad(pad)));
 }
 
 void Autonomy::act(const estimation::RobotState& state) {
   switch (mission_.phase()) {
     case MissionPhase::kEnableDrives: break;
+    case MissionPhase::kRecover: recover(state); break;
     case MissionPhase::kStandUp:
-      if (mission_.phase_changed()) stand_up_.start(bus_.states());
+      if (mission_.phase_changed()) start_stand_up();
       commands_ = stand_up_.update(tick_s_);
       break;
     case MissionPhase::kSettle:

@@ -14,6 +14,7 @@
 #include "core/autonomy/pose_history.h"
 #include "core/autonomy/tick.h"
 #include "core/control/locomotion.h"
+#include "core/control/recovery.h"
 #include "core/control/stand_up.h"
 #include "core/estimation/estimator.h"
 
@@ -57,6 +58,11 @@ class Autonomy {
   bool locomotion_acts() const;
   control::WalkCommand walk_command() const;
   void begin_walking(const estimation::RobotState& state);
+  void recover(const estimation::RobotState& state);
+  void start_stand_up();
+  bool must_recover(const estimation::RobotState& state) const;
+  bool has_fallen(const estimation::RobotState& state);
+  void note_footing(const estimation::RobotState& state);
   const mapping::MapWindow* window() const;
   void send();
   void report(const estimation::RobotState& state);
@@ -73,10 +79,15 @@ class Autonomy {
   MapTask map_;
   Mission mission_;
   control::StandUp stand_up_;
+  control::Recovery recovery_;
   control::Locomotion locomotion_;
   MpcTask mpc_;
   actuation::JointCommands commands_;
   bool walking_ready_ = false;  // stand-up is over, O has its place
+  bool has_stood_ = false;      // O's origin is where it stood up first
+  // Ground below the trunk where it last stood upright on its feet: where it gets up again.
+  Vector3 footing_O_m_ = Vector3::Zero();
+  double collapsed_s_ = 0;
   double imu_silent_s_ = 0;
   double tick_s_ = 0;
   std::uint64_t imu_refused_ = 0;

@@ -78,6 +78,7 @@ struct MissionConfig {
   double stand_s = 0;    // mission stand: how long
   double timeout_s = 0;  // of the whole mission
   bool unseen_ground = false;  // the operator vouches for ground that the robot has not seen
+  bool recover = false;  // after a fall, and from any pose at the start: get up and go on
   FixedVector<ScriptStep, kMaxScriptSteps> script;  // mission script: one after the other
 
   template <class Self, class Visitor>
@@ -96,6 +97,7 @@ struct MissionConfig {
     visit.real("stand_s", self.stand_s, {0.0, 3600.0}, "mission stand: how long");
     visit.real("timeout_s", self.timeout_s, {1.0, 36000.0}, "of the whole mission");
     visit.boolean("unseen_ground", self.unseen_ground, "the operator vouches for unseen ground");
+    visit.boolean("recover", self.recover, "get up after a fall and go on");
     visit.list("script", self.script);
   }
 };

@@ -32,6 +32,12 @@ class MapTask {
   // The ground under the standing robot, vouched for by the operator.
   Status assume_pad(const mapping::AssumedPad& pad);
 
+  // The ground around a place is not where the map has it any more. Not between release and
+  // publish.
+  Status forget(double x_O_m, double y_O_m, double half_side_m) {
+    return mapper_.forget(x_O_m, y_O_m, half_side_m);
+  }
+
   // Copies frame and pose. false: mapping is off or the frame's stamp has no pose (counted).
   bool release(const hal::DepthFrame& frame, const PoseHistory& history,
                const Vector3& window_centre_O_m);

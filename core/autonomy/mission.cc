@@ -6,6 +6,7 @@ namespace surefoot::autonomy {
 namespace {
 
 constexpr double kDriveEnable_s = 1.0;  // drives must answer within this time after the rest
+constexpr double kFacingCosine = 0.7;   // looking farther away it turns on the spot: it sees ahead
 constexpr double kArrivedHold_s = 0.5;  // standing at the goal before the mission counts as done
 
 }  // namespace
@@ -36,14 +37,23 @@ void Mission::update(const estimation::RobotState& state, const MissionFacts& fa
   elapsed_s_ += step_s;
   phase_s_ += step_s;
   if (phase_ == MissionPhase::kStopped) return;
+  const bool may_fall = phase_ >= MissionPhase::kStandUp;
+  if (config_.recover && may_fall && facts.fallen) return enter(MissionPhase::kRecover);
   if (facts.fault != StopReason::kNone) return stop(facts.fault);
   if (phase_ == MissionPhase::kArrived) return;
   if (elapsed_s_ >= config_.timeout_s) return stop(StopReason::kMissionTimeout);
 
   switch (phase_) {
     case MissionPhase::kEnableDrives:
-      if (facts.drives_ready && phase_s_ >= config_.rest_s) return enter(MissionPhase::kStandUp);
+      if (facts.drives_ready && phase_s_ >= config_.rest_s) {
+        const bool recover = config_.recover && facts.must_recover;
+        return enter(recover ? MissionPhase::kRecover : MissionPhase::kStandUp);
+      }
       if (phase_s_ > config_.rest_s + kDriveEnable_s) return stop(StopReason::kDriveSilent);
+      break;
+    case MissionPhase::kRecover:
+      if (facts.recovery_failed) return stop(StopReason::kRecoveryFailed);
+      if (facts.recovered) return enter(MissionPhase::kStandUp);
       break;
     case MissionPhase::kStandUp:
       if (facts.stand_up_done) return enter(MissionPhase::kSettle);
@@ -78,6 +88,9 @@ void Mission::cross(const estimation::RobotState& state) {
   command_.forward_m_s = yaw.cos * config_.speed_m_s + yaw.sin * sideways;
   command_.left_m_s = yaw.cos * sideways - yaw.sin * config_.speed_m_s;
   command_.yaw_rate_rad_s = turn_towards(state, 0.0);
+  if (yaw.cos >= kFacingCosine) return;
+  command_.forward_m_s = 0.0;
+  command_.left_m_s = 0.0;
 }
 
 double Mission::turn_towards(const estimation::RobotState& state, double heading_rad) const {

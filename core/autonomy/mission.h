@@ -12,6 +12,10 @@ namespace surefoot::autonomy {
 // What the mission needs to know beside the state.
 struct MissionFacts {
   bool drives_ready = false;  // every drive answers
+  bool must_recover = false;  // before standing up: it does not lie on its folded legs
+  bool fallen = false;
+  bool recovered = false;
+  bool recovery_failed = false;
   bool stand_up_done = false;
   bool all_in_stance = false;
   StopReason fault = StopReason::kNone;

@@ -57,6 +57,7 @@ struct TickInputs {
 
 enum class MissionPhase : std::uint8_t {
   kEnableDrives = 0,
+  kRecover,  // from any resting pose to the belly, legs folded
   kStandUp,
   kSettle,  // stand still: gyro bias, first map
   kWalk,
@@ -72,7 +73,8 @@ enum class StopReason : std::uint8_t {
   kImuSilent,
   kOperator,  // emergency stop
   kMissionTimeout,
-  kDriveFault,  // a drive reported an error code
+  kDriveFault,      // a drive reported an error code
+  kRecoveryFailed,  // on the ground, and no roll has turned the robot over
 };
 
 // One leg, in the odometry frame O (docs/frames_and_units.md).

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "core/base/fixed_vector.h"
 #include "core/base/parameters.h"
 #include "core/control/whole_body_config.h"
 #include "core/robot/robot_model.h"
@@ -148,6 +149,51 @@ struct StandUpConfig {
   }
 };
 
+// One pose of a roll, as for a left leg: positive abduction spreads.
+struct RollKeyframe {
+  double hold_s = 0;                 // after the blend to it
+  std::array<double, 3> low_rad{};   // legs of the side it rolls over: abad, hip, knee
+  std::array<double, 3> high_rad{};  // the others
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("hold_s", self.hold_s, {0.0, 5.0}, "after the blend to it");
+    visit.reals("low_rad", self.low_rad, {-6.3, 6.3}, "legs of the side it rolls over");
+    visit.reals("high_rad", self.high_rad, {-6.3, 6.3}, "legs of the other side");
+  }
+};
+
+inline constexpr std::size_t kMaxRollKeyframes = 8;
+
+struct RecoveryConfig {
+  double collapsed_height_m = 0;  // trunk lower than this over its feet while it should stand: fell
+  double collapsed_s = 0;         // for so long
+  double upright_tilt_rad = 0;    // within: it can fold and stand up
+  double quiet_rad_s = 0;         // trunk turning slower than this counts as lying still
+  double quiet_s = 0;             // for so long
+  double speed_rad_s = 0;         // mean speed of the joint that has the longest way
+  double kp_Nm_rad = 0;
+  double kd_Nm_s_rad = 0;
+  double limp_damping_Nm_s_rad = 0;
+  int max_rolls = 0;  // then it gives up
+  FixedVector<RollKeyframe, kMaxRollKeyframes> roll;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("collapsed_height_m", self.collapsed_height_m, {0.0, 1.0}, "lower: it fell");
+    visit.real("collapsed_s", self.collapsed_s, {0.01, 5.0}, "for so long");
+    visit.real("upright_tilt_rad", self.upright_tilt_rad, {0.1, 1.5}, "within: it can stand up");
+    visit.real("quiet_rad_s", self.quiet_rad_s, {0.01, 5.0}, "slower: lying still");
+    visit.real("quiet_s", self.quiet_s, {0.02, 5.0}, "for so long");
+    visit.real("speed_rad_s", self.speed_rad_s, {0.1, 30.0}, "of the joint with the longest way");
+    visit.real("kp_Nm_rad", self.kp_Nm_rad, {0.0, 500.0}, "joint stiffness");
+    visit.real("kd_Nm_s_rad", self.kd_Nm_s_rad, {0.0, 20.0}, "joint damping");
+    visit.real("limp_damping_Nm_s_rad", self.limp_damping_Nm_s_rad, {0.0, 20.0}, "while limp");
+    visit.integer("max_rolls", self.max_rolls, {0, 100}, "then it gives up");
+    visit.list("roll", self.roll);
+  }
+};
+
 struct ControlConfig {
   GaitLibrary gaits;
   FootholdConfig foothold;
@@ -156,6 +202,7 @@ struct ControlConfig {
   MpcConfig mpc;
   WholeBodyConfig whole_body;
   StandUpConfig stand_up;
+  RecoveryConfig recovery;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -166,6 +213,7 @@ struct ControlConfig {
     visit.group("mpc", self.mpc);
     visit.group("whole_body", self.whole_body);
     visit.group("stand_up", self.stand_up);
+    visit.group("recovery", self.recovery);
   }
 };
 

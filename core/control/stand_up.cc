@@ -28,6 +28,12 @@ void StandUp::start(const actuation::JointStates& joints) {
   }
 }
 
+void StandUp::start_folded() {
+  elapsed_s_ = config_.fold_s;
+  const Vector3 folded(config_.folded_rad[0], config_.folded_rad[1], config_.folded_rad[2]);
+  start_rad_.fill(folded);
+}
+
 Vector3 StandUp::standing_foot_B_m(std::size_t leg, double height_m) const {
   return robot::hip_joint_B_m(model_, leg) + Vector3(0.0, 0.0, model_.foot_radius_m - height_m);
 }

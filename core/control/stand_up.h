@@ -16,6 +16,8 @@ class StandUp {
   void reset(const StandUpConfig& config, const robot::RobotModel& model, double height_m);
   // Begins from the joints' present angles.
   void start(const actuation::JointStates& joints);
+  // Begins from the folded pose, which is commanded already: rises at once.
+  void start_folded();
   // One tick; after done() the standing pose is held.
   actuation::JointCommands update(double step_s);
   bool done() const { return elapsed_s_ >= config_.fold_s + config_.rise_s; }

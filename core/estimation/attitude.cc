@@ -45,6 +45,12 @@ void AttitudeEstimator::gather_start(const Vector3& f) {
   initialised_ = true;
 }
 
+void AttitudeEstimator::set_yaw(double yaw_rad) {
+  const double turn = yaw_rad - math::atan2(R_OB_(1, 0), R_OB_(0, 0));
+  q_OB_ = geometry::normalised(geometry::from_rotation_vector(Vector3(0.0, 0.0, turn)) * q_OB_);
+  R_OB_ = geometry::to_matrix(q_OB_);
+}
+
 // Rotation, in B, that would bring the predicted "up" onto the measured one; zero while
 // accelerating.
 Vector3 AttitudeEstimator::gravity_correction(const Vector3& f) const {

@@ -29,6 +29,8 @@ class AttitudeEstimator {
 
   // Turns about O's up axis and shifts the gyro's bias about it.
   void correct_yaw(double yaw_rad, double bias_rad_s);
+  // Turns the whole estimate about the vertical so that the heading becomes yaw_rad.
+  void set_yaw(double yaw_rad);
 
   bool initialised() const { return initialised_; }
   const geometry::Quaternion& q_OB() const { return q_OB_; }

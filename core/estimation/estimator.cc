@@ -23,6 +23,13 @@ void Estimator::place(const Vector3& p_OB_m) {
   state_.v_OB_m_s.setZero();
 }
 
+void Estimator::set_yaw(double yaw_rad) {
+  attitude_.set_yaw(yaw_rad);
+  state_.q_OB = attitude_.q_OB();
+  state_.R_OB = attitude_.R_OB();
+  state_.yaw_rad = yaw_rad;
+}
+
 std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
                               const std::array<actuation::JointState, robot::kJoints>& joints,
                               const std::array<GaitPhase, robot::kLegs>& gait, bool lying_still) {

@@ -58,6 +58,8 @@ class Estimator {
   // Declares where the trunk is: O's origin lies on the ground below it. Whoever keeps poses of O
   // forgets them now.
   void place(const Vector3& p_OB_m);
+  // Declares which way it looks: O's x axis lies along heading 0.
+  void set_yaw(double yaw_rad);
 
   const RobotState& state() const { return state_; }
   const DriftEstimator& drift() const { return drift_; }

@@ -228,6 +228,23 @@ void Mapper::fuse(std::uint32_t now_ms, IntegrationReport& report) {
   }
 }
 
+Status Mapper::forget(double x_O_m, double y_O_m, double half_side_m) {
+  if (!configured_) return Status::kUnavailable;
+  if (!math::is_finite(x_O_m) || !math::is_finite(y_O_m)) return Status::kInvalid;
+  if (!(half_side_m >= 0 && half_side_m <= 5)) return Status::kInvalid;
+  if (!mapping::is_mappable(x_O_m) || !mapping::is_mappable(y_O_m)) return Status::kOutOfRange;
+  const double size = config_.cell_size_m;
+  const CellIndex low = cell_index(x_O_m - half_side_m, y_O_m - half_side_m, size);
+  const CellIndex high = cell_index(x_O_m + half_side_m, y_O_m + half_side_m, size);
+  for (std::int32_t iy = low.iy; iy <= high.iy; ++iy) {
+    for (std::int32_t ix = low.ix; ix <= high.ix; ++ix) {
+      MapCell* cell = map_.find({ix, iy});
+      if (cell != nullptr) *cell = MapCell{};
+    }
+  }
+  return Status::kOk;
+}
+
 Status Mapper::publish(double x_O_m, double y_O_m, MapWindow& out) {
   if (!configured_) return Status::kUnavailable;
   if (!math::is_finite(x_O_m) || !math::is_finite(y_O_m)) return Status::kInvalid;

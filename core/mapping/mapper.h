@@ -45,6 +45,11 @@ class Mapper {
   // above 5 m. kOutOfRange: unmappable.
   Status assume(const AssumedPad& pad);
 
+  // Makes the cells of a square of side 2 half_side_m around a position unknown; the rest stays.
+  // kUnavailable: not configured. kInvalid: not finite, half_side_m negative or above 5 m.
+  // kOutOfRange: unmappable.
+  Status forget(double x_O_m, double y_O_m, double half_side_m);
+
   // One depth frame, taken from X_OC at frame.stamp. The map follows the body.
   // kUnavailable: not configured or mapping disabled. kInvalid: header or pose breaks its domain,
   // or the stamp is not after the last one. kOutOfRange: body or camera unmappable. kNotFound: no

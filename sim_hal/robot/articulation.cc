@@ -188,39 +188,61 @@ void Articulation::build_leg(dWorldID world, std::size_t leg) {
   }
 }
 
-// Moves the bodies, with their joints, from the zero pose to the start pose.
 void Articulation::place(const StartPose& start) {
+  std::array<robot::LegVector, robot::kLegs> legs_rad;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    const robot::LegVector q(robot::left_sign(leg) * start.leg_rad[0], start.leg_rad[1],
-                             start.leg_rad[2]);
-    const Matrix3 abad = rotation_x(q[0]);
+    legs_rad[leg] = robot::LegVector(robot::left_sign(leg) * start.leg_rad[0], start.leg_rad[1],
+                                     start.leg_rad[2]);
+  }
+  set_down(Matrix3::Identity(), legs_rad, 0.0, 0.0, start.drop_height_m);
+}
+
+void Articulation::set_down(const Matrix3& R_WB,
+                            const std::array<robot::LegVector, robot::kLegs>& legs_rad, double x_m,
+                            double y_m, double lowest_m) {
+  const Vector3 trunk = R_WB * centres_[0];
+  dBodySetPosition(bodies_[0], trunk.x(), trunk.y(), trunk.z());
+  set_rotation(bodies_[0], R_WB);
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    const robot::LegVector& q = legs_rad[leg];
+    const Matrix3 abad = R_WB * rotation_x(q[0]);
     const Matrix3 thigh = abad * rotation_y(-q[1]);
     const std::array<Matrix3, 3> rotations{abad, thigh, thigh * rotation_y(-q[2])};
     const robot::LegPoints points = robot::leg_points_B(model_, leg, q);
     for (std::size_t k = 0; k < robot::kJointsPerLeg; ++k) {
       const std::size_t joint = robot::joint_index(leg, k);
       const std::size_t body = body_of(joint);
-      const Vector3 p = points.p_B_m[k] + rotations[k] * centres_[body];
+      const Vector3 p = R_WB * points.p_B_m[k] + rotations[k] * centres_[body];
       dBodySetPosition(bodies_[body], p.x(), p.y(), p.z());
       set_rotation(bodies_[body], rotations[k]);
       positions_[joint] = q[static_cast<Eigen::Index>(k)];
     }
   }
-  const double lift = start.drop_height_m - lowest_point_m();
+  const double lift = lowest_m - lowest_point_m();
   for (dBodyID body : bodies_) {
     const dReal* p = dBodyGetPosition(body);
-    dBodySetPosition(body, p[0], p[1], p[2] + lift);
+    dBodySetPosition(body, p[0] + x_m, p[1] + y_m, p[2] + lift);
+    dBodySetLinearVel(body, 0, 0, 0);
+    dBodySetAngularVel(body, 0, 0, 0);
   }
 }
 
 double Articulation::lowest_point_m() const {
-  double lowest = trunk_position_m().z() - model_.trunk_size_m[2] / 2;
+  double lowest = trunk_position_m().z();
+  const Matrix3 rotation = trunk_rotation();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    lowest -=
+        0.5 * std::fabs(rotation(2, axis)) * model_.trunk_size_m[static_cast<std::size_t>(axis)];
+  }
+  const double knee_radius = std::max(model_.thigh_radius_m, model_.shank_radius_m);
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    const std::size_t thigh = body_of(robot::joint_index(leg, 1));
     const std::size_t shank = body_of(robot::joint_index(leg, 2));
-    const double foot = point_W_m(shank, Vector3(0, 0, -model_.shank_length_m)).z();
+    const double hip = point_W_m(thigh, Vector3::Zero()).z();
     const double knee = point_W_m(shank, Vector3::Zero()).z();
-    lowest = std::min(lowest, foot - model_.foot_radius_m);
-    lowest = std::min(lowest, knee - std::max(model_.thigh_radius_m, model_.shank_radius_m));
+    const double foot = point_W_m(shank, Vector3(0, 0, -model_.shank_length_m)).z();
+    lowest = std::min(
+        {lowest, hip - model_.thigh_radius_m, knee - knee_radius, foot - model_.foot_radius_m});
   }
   return lowest;
 }
@@ -282,6 +304,21 @@ void Articulation::update() {
     velocities_[joint] = dJointGetHingeAngleRate(hinges_[joint]);
     dJointSetHingeParam(hinges_[joint], dParamVel, velocities_[joint]);  // armature: build_leg()
   }
+}
+
+std::array<robot::LegVector, robot::kLegs> Articulation::leg_angles_rad() const {
+  std::array<robot::LegVector, robot::kLegs> legs;
+  for (std::size_t joint = 0; joint < robot::kJoints; ++joint) {
+    legs[joint / robot::kJointsPerLeg][static_cast<Eigen::Index>(joint % robot::kJointsPerLeg)] =
+        positions_[joint];
+  }
+  return legs;
+}
+
+double Articulation::fastest_joint_rad_s() const {
+  double fastest = 0;
+  for (const double velocity : velocities_) fastest = std::max(fastest, std::fabs(velocity));
+  return fastest;
 }
 
 double Articulation::mechanical_energy_J(double gravity_m_s2) const {

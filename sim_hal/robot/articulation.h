@@ -10,6 +10,7 @@
 
 #include "core/base/hash.h"
 #include "core/math/linear.h"
+#include "core/robot/kinematics.h"
 #include "core/robot/robot_model.h"
 #include "sim_hal/simulator_config.h"
 
@@ -33,6 +34,11 @@ class Articulation {
   Articulation(const Articulation&) = delete;
   Articulation& operator=(const Articulation&) = delete;
 
+  // Moves the bodies, at rest, so that the joints have these angles, the trunk's origin lies over
+  // (x, y) of W and the lowest point of the robot at height lowest_m.
+  void set_down(const Matrix3& R_WB, const std::array<robot::LegVector, robot::kLegs>& legs_rad,
+                double x_m, double y_m, double lowest_m);
+
   dBodyID body(std::size_t i) const { return bodies_[i]; }
   const robot::RobotModel& model() const { return model_; }
 
@@ -50,6 +56,9 @@ class Articulation {
 
   double joint_position_rad(std::size_t joint) const { return positions_[joint]; }
   double joint_velocity_rad_s(std::size_t joint) const { return velocities_[joint]; }
+
+  std::array<robot::LegVector, robot::kLegs> leg_angles_rad() const;
+  double fastest_joint_rad_s() const;
 
   // Puts motor torques (at the joint, already limited), joint friction and mechanical stops on the
   // bodies for the next step.

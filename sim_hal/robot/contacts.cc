@@ -14,8 +14,13 @@ constexpr double kSlipping_m_s = 0.005;
 constexpr double kAcross = 0.15;
 // How far the trunk may be from the ground and still be tested.
 constexpr double kMargin_m = 0.01;
+constexpr double kSelfFriction = 0.3;  // of the robot's shells on each other
 
 Vector3 vector(const dReal* v) { return {v[0], v[1], v[2]}; }
+
+bool apart(const std::array<dReal, 6>& a, const std::array<dReal, 6>& b) {
+  return a[0] > b[1] || b[0] > a[1] || a[2] > b[3] || b[2] > a[3] || a[4] > b[5] || b[4] > a[5];
+}
 
 void place_capsule(dGeomID geom, const Vector3& middle) {
   dGeomSetOffsetPosition(geom, middle.x(), middle.y(), middle.z());
@@ -31,6 +36,7 @@ Contacts::Contacts(dWorldID world, const Articulation& robot, const Terrain& ter
       friction_(terrain.friction),
       grid_(terrain.grid) {
   make_shapes(robot);
+  make_self_pairs();
   make_terrain(terrain);
   group_ = dJointGroupCreate(0);
   // ODE keeps a group's arenas when it is emptied: filling it once means no allocation later.
@@ -88,7 +94,70 @@ void Contacts::make_terrain(const Terrain& terrain) {
 
 void Contacts::collide() {
   count_ = 0;
+  self_count_ = 0;
   for (std::size_t i = 0; i < kShapes; ++i) collide_shape(i);
+  collide_self();
+}
+
+void Contacts::make_self_pairs() {
+  std::size_t count = 0;
+  const auto pair = [&](std::size_t a, std::size_t b) {
+    self_pairs_[count++] = {static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b)};
+  };
+  constexpr std::array<Shape, 3> kAll{Shape::kFoot, Shape::kShank, Shape::kThigh};
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    pair(kTrunk, shape_of(leg, Shape::kFoot));
+    pair(kTrunk, shape_of(leg, Shape::kShank));
+    for (std::size_t other = leg + 1; other < robot::kLegs; ++other) {
+      for (const Shape a : kAll) {
+        for (const Shape b : kAll) pair(shape_of(leg, a), shape_of(other, b));
+      }
+    }
+  }
+}
+
+// Boxes of the pairs first: a robot that walks touches itself nowhere.
+void Contacts::collide_self() {
+  std::array<std::array<dReal, 6>, kShapes> bounds{};
+  for (std::size_t i = 0; i < kShapes; ++i) dGeomGetAABB(geoms_[i], bounds[i].data());
+  for (const SelfPair& pair : self_pairs_) {
+    if (apart(bounds[pair[0]], bounds[pair[1]])) continue;
+    std::array<dContactGeom, kMaxPerPair> found;
+    const int count =
+        dCollide(geoms_[pair[0]], geoms_[pair[1]], kMaxPerPair, found.data(), sizeof(dContactGeom));
+    for (int i = 0; i < count; ++i) add_self(found[static_cast<std::size_t>(i)]);
+  }
+}
+
+double Contacts::self_overlap_m() const {
+  double deepest = 0;
+  for (const SelfPair& pair : self_pairs_) {
+    std::array<dContactGeom, kMaxPerPair> found;
+    const int count =
+        dCollide(geoms_[pair[0]], geoms_[pair[1]], kMaxPerPair, found.data(), sizeof(dContactGeom));
+    for (int i = 0; i < count; ++i) {
+      deepest = std::max(deepest, double{found[static_cast<std::size_t>(i)].depth});
+    }
+  }
+  return deepest;
+}
+
+// Kept out of the records: what the robot feels of the ground is not what it feels of itself.
+void Contacts::add_self(const dContactGeom& geometry) {
+  if (count_ + self_count_ == kMaxPerStep) {
+    ++dropped_;
+    return;
+  }
+  deepest_self_m_ = std::max(deepest_self_m_, double{geometry.depth});
+  dContact contact{};
+  contact.geom = geometry;
+  contact.surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
+  contact.surface.mu = kSelfFriction;
+  contact.surface.soft_erp = config_.contact_erp;
+  contact.surface.soft_cfm = config_.contact_cfm;
+  const dJointID joint = dJointCreateContact(world_, group_, &contact);
+  dJointAttach(joint, dGeomGetBody(geometry.g1), dGeomGetBody(geometry.g2));
+  ++self_count_;
 }
 
 void Contacts::collide_shape(std::size_t shape) {

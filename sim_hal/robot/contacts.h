@@ -1,6 +1,7 @@
 // Contact between the robot's collision shapes and the ground: foot spheres, shank and thigh
 // capsules, trunk box, against plane, boxes (ODE's collider) and grid of heights (grid_contacts.h).
-// The robot does not collide with itself.
+// The robot also collides with itself: shanks and feet with the trunk, legs with each other. Not
+// the thighs with the trunk: their upper ends turn inside the abduction housings beside it.
 //
 // Friction is Coulomb's cone as far as ODE's pyramid can: one side of the pyramid follows the slip,
 // or, while a contact sticks, its last tangential force. README.md "Friction" has the measured
@@ -51,6 +52,10 @@ class Contacts {
 
   // Before the step: finds contacts and makes their joints.
   void collide();
+  // How deep parts of the robot overlap in its present pose; 0: not at all.
+  double self_overlap_m() const;
+  // The deepest that collide() has found.
+  double deepest_self_overlap_m() const { return deepest_self_m_; }
   // After the step: sums forces per shape and discards the joints.
   void collect();
 
@@ -58,7 +63,9 @@ class Contacts {
   std::uint64_t dropped() const { return dropped_; }
 
  private:
-  struct Record {  // one contact joint of the present step
+  using SelfPair = std::array<std::uint8_t, 2>;  // two shapes that can meet
+  static constexpr std::size_t kSelfPairs = 62;  // 8 with the trunk, 9 for each pair of legs
+  struct Record {                                // one contact joint of the present step
     std::size_t shape = 0;
     Vector3 normal = Vector3::Zero();
     Vector3 slip = Vector3::Zero();
@@ -71,6 +78,9 @@ class Contacts {
   void collide_grid(std::size_t shape);
   void touch_grid(std::size_t shape, const Vector3& centre_m, double radius_m);
   void add(std::size_t shape, const dContactGeom& geometry);
+  void make_self_pairs();
+  void collide_self();
+  void add_self(const dContactGeom& geometry);
 
   dWorldID world_;
   const TerrainIndex& index_;
@@ -83,8 +93,11 @@ class Contacts {
   dJointGroupID group_ = nullptr;
   std::array<Record, kMaxPerStep> records_;
   std::array<dJointFeedback, kMaxPerStep> feedback_{};
-  std::size_t count_ = 0;
+  std::size_t count_ = 0;       // records: contacts with the ground
+  std::size_t self_count_ = 0;  // contacts of the robot with itself
   std::array<ShapeContact, kShapes> shapes_;
+  std::array<SelfPair, kSelfPairs> self_pairs_{};
+  double deepest_self_m_ = 0;
   std::uint64_t dropped_ = 0;
 };
 

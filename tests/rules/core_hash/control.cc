@@ -1,7 +1,9 @@
 // Workloads of core/control.
+#include "core/base/assert.h"
 #include "core/base/random.h"
 #include "core/control/convex_mpc.h"
 #include "core/control/gait.h"
+#include "core/control/recovery.h"
 #include "core/control/swing.h"
 #include "core/control/whole_body.h"
 #include "core/geometry/rotations.h"
@@ -135,6 +137,46 @@ void hash_whole_body(Fnv64& hash) {
   }
   hash.word(whole_body.counters().damped, 8);
   hash.word(whole_body.counters().refused, 8);
+}
+
+// Rolls over from random poses; the trunk turns at random between rolls.
+void hash_recovery(Fnv64& hash) {
+  control::RecoveryConfig config;
+  config.upright_tilt_rad = 0.7;
+  config.quiet_rad_s = 0.2;
+  config.quiet_s = 0.1;
+  config.speed_rad_s = 8.0;
+  config.kp_Nm_rad = 60.0;
+  config.kd_Nm_s_rad = 1.5;
+  config.limp_damping_Nm_s_rad = 1.0;
+  config.max_rolls = 4;
+  SUREFOOT_ASSERT(ok(config.roll.push_back({0.05, {-1.4, -1.6, 2.75}, {0.9, -3.1, 2.75}})));
+  SUREFOOT_ASSERT(ok(config.roll.push_back({0.2, {0.0, -1.4, 2.7}, {1.4, -3.4, 0.7}})));
+  control::Recovery recovery;
+  recovery.reset(config, {0.0, -1.4, 2.7});
+  Random random(11);
+  estimation::RobotState state;
+  for (int i = 0; i < 20; ++i) {
+    for (actuation::JointState& joint : state.joints) joint.position_rad = random.uniform(-3, 3);
+    recovery.begin();
+    recovery.start();
+    for (int tick = 0; tick < 2000; ++tick) {
+      if (tick % 400 == 0) {
+        Vector3 turn;
+        for (Eigen::Index axis = 0; axis < 3; ++axis) turn[axis] = random.uniform(-2, 2);
+        state.R_OB = geometry::to_matrix(geometry::from_rotation_vector(turn));
+      }
+      const actuation::JointCommands& commands = recovery.update(state, 0.002);
+      hash.byte(static_cast<std::uint8_t>(recovery.stage()));
+      for (std::size_t joint = 0; joint < robot::kJoints; ++joint) {
+        mix(hash, commands[joint].position_rad);
+        mix(hash, commands[joint].kp_Nm_rad);
+        if (joint % 5 != 0 && commands[joint].kp_Nm_rad > 0.0) {
+          state.joints[joint].position_rad = commands[joint].position_rad;
+        }
+      }
+    }
+  }
 }
 
 }  // namespace surefoot::tests

@@ -24,6 +24,7 @@ constexpr Workload kWorkloads[] = {
     {"swing", surefoot::tests::hash_swing},
     {"convex_mpc", surefoot::tests::hash_convex_mpc},
     {"whole_body", surefoot::tests::hash_whole_body},
+    {"recovery", surefoot::tests::hash_recovery},
 };
 
 }  // namespace

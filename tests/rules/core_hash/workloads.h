@@ -34,5 +34,6 @@ void hash_mapping(Fnv64& hash);
 void hash_swing(Fnv64& hash);
 void hash_convex_mpc(Fnv64& hash);
 void hash_whole_body(Fnv64& hash);
+void hash_recovery(Fnv64& hash);
 
 }  // namespace surefoot::tests

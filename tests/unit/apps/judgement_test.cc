@@ -101,7 +101,8 @@ TEST(Referee, StopReasonsHaveTheirOutcomesAndExitCodes) {
       {StopReason::kDriveFault, Outcome::kFault},
       {StopReason::kMissionTimeout, Outcome::kTimeout},
       {StopReason::kOperator, Outcome::kAborted},
-      {StopReason::kTilt, Outcome::kFall}};
+      {StopReason::kTilt, Outcome::kFall},
+      {StopReason::kRecoveryFailed, Outcome::kFall}};
   for (const auto& [reason, outcome] : expected) {
     const Verdict verdict = judge(in_phase(MissionPhase::kStopped, reason), body_at(1));
     EXPECT_EQ(verdict.outcome, outcome) << describe(reason);
@@ -110,6 +111,35 @@ TEST(Referee, StopReasonsHaveTheirOutcomesAndExitCodes) {
   EXPECT_EQ(exit_code(Outcome::kGoal), 0);
   EXPECT_EQ(exit_code(Outcome::kFall), 1);
   EXPECT_EQ(exit_code(Outcome::kFault), 3);
+}
+
+TEST(Referee, WhereItMayGetUpEachFallCountsOnceAndTheRunGoesOn) {
+  RefereeRules rules;
+  rules.may_recover = true;
+  Referee referee(rules);
+  double t = 0;
+  const auto observe = [&](MissionPhase phase, double tilt_rad) {
+    for (int i = 0; i < 50; ++i) {
+      referee.observe(at(t += 0.008), in_phase(phase), body_at(3.0, 0, tilt_rad));
+    }
+  };
+  observe(MissionPhase::kEnableDrives, 3.0);  // thrown on its back: no fall
+  observe(MissionPhase::kRecover, 2.0);
+  observe(MissionPhase::kStandUp, 0.0);
+  EXPECT_EQ(referee.falls(), 0);
+  for (int fall = 1; fall <= 2; ++fall) {
+    observe(MissionPhase::kWalk, 0.0);
+    observe(MissionPhase::kWalk, 1.5);
+    EXPECT_EQ(referee.verdict().outcome, Outcome::kFall);
+    EXPECT_NE(referee.verdict().reason.find("did not notice"), std::string::npos);
+    observe(MissionPhase::kRecover, 1.5);
+    observe(MissionPhase::kStandUp, 0.0);
+    EXPECT_EQ(referee.falls(), fall);
+    EXPECT_FALSE(referee.over());
+  }
+  observe(MissionPhase::kWalk, 0.0);
+  observe(MissionPhase::kArrived, 0.0);
+  EXPECT_EQ(referee.verdict().outcome, Outcome::kGoal);
 }
 
 // Walks 3 m in 6 s with a sway of 1 cm, the estimate 1 % long.
@@ -159,6 +189,36 @@ TEST(RunMeasures, ASlipIsCountedOncePerContact) {
     log.add(at(i * 0.008), in_phase(MissionPhase::kWalk), &truth);
   }
   EXPECT_EQ(measure(log, 3.0).foot_slips, 1u);
+}
+
+TEST(RunMeasures, RecoveryIsTimedByTheTruth) {
+  RunLog log(2000, true);
+  std::array<double, robot::kJoints> limit_Nm{};
+  limit_Nm.fill(20.0);
+  double t = 0;
+  const auto add = [&](double seconds, MissionPhase phase, double tilt_rad, double height_m) {
+    for (int i = 0; i < static_cast<int>(seconds * 125 + 0.5); ++i) {
+      sim::Truth truth = body_at(0, 0, tilt_rad);
+      truth.p_WB_m[2] = height_m;
+      truth.joints[4].motor_torque_Nm = phase == MissionPhase::kRecover ? -15.0 : 19.0;
+      log.add(at(t += 0.008), in_phase(phase), &truth);
+    }
+  };
+  add(1.0, MissionPhase::kEnableDrives, 3.0, 0.05);
+  add(2.0, MissionPhase::kRecover, 3.0, 0.05);
+  add(0.4, MissionPhase::kStandUp, 0.0, 0.1);
+  add(0.3, MissionPhase::kStandUp, 0.0, 0.28);  // up, but it sinks again
+  add(0.3, MissionPhase::kSettle, 0.0, 0.1);
+  add(1.0, MissionPhase::kSettle, 0.0, 0.28);
+  const RecoveryFigures once = measure_recovery(log, 0.28, limit_Nm);
+  EXPECT_EQ(once.count, 1);
+  EXPECT_EQ(once.stood, 1);
+  EXPECT_NEAR(once.time_to_stand_s, 3.0, 0.02);
+  EXPECT_NEAR(once.max_torque_share, 0.95, 1e-12);
+  add(1.0, MissionPhase::kRecover, 3.0, 0.05);
+  const RecoveryFigures twice = measure_recovery(log, 0.28, limit_Nm);
+  EXPECT_EQ(twice.count, 2);
+  EXPECT_EQ(twice.stood, 1);
 }
 
 TEST(RunMeasures, ARunThatNeverWalked) {

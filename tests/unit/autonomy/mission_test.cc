@@ -142,5 +142,72 @@ TEST(Mission, FollowsItsScriptLineByLineAndThenArrives) {
   EXPECT_EQ(mission.gait(), control::GaitKind::kStand);
 }
 
+TEST(Mission, GetsUpAfterAFallAndWalksOn) {
+  MissionConfig config = cross();
+  config.recover = true;
+  Mission mission;
+  mission.reset(config);
+  estimation::RobotState state;
+  ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 0);
+  MissionFacts down = healthy();
+  down.fallen = true;
+  down.fault = StopReason::kTilt;
+  mission.update(state, down, kStep_s);
+  EXPECT_EQ(mission.phase(), MissionPhase::kRecover);
+  EXPECT_TRUE(mission.phase_changed());
+  EXPECT_EQ(mission.gait(), control::GaitKind::kStand);
+  down.fault = StopReason::kNone;
+  for (int tick = 0; tick < 500; ++tick) mission.update(state, down, kStep_s);
+  EXPECT_EQ(mission.phase(), MissionPhase::kRecover);
+  MissionFacts up = healthy();
+  up.recovered = true;
+  EXPECT_EQ(ticks_until(mission, MissionPhase::kStandUp, state, up, 10), 1);
+  ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 0);
+  EXPECT_EQ(mission.gait(), control::GaitKind::kTrot);
+  state.p_OB_m[0] = 3.0;
+  EXPECT_EQ(ticks_until(mission, MissionPhase::kArrived, state, healthy(), 10), 1);
+}
+
+TEST(Mission, WithoutRecoverAFallStopsIt) {
+  Mission mission;
+  mission.reset(cross());
+  const estimation::RobotState state;
+  ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 0);
+  MissionFacts down = healthy();
+  down.fallen = true;
+  down.fault = StopReason::kTilt;
+  mission.update(state, down, kStep_s);
+  EXPECT_EQ(mission.phase(), MissionPhase::kStopped);
+  EXPECT_EQ(mission.stop_reason(), StopReason::kTilt);
+}
+
+TEST(Mission, ARecoveryThatFailsStopsIt) {
+  MissionConfig config = cross();
+  config.recover = true;
+  Mission mission;
+  mission.reset(config);
+  const estimation::RobotState state;
+  MissionFacts facts = healthy();
+  facts.must_recover = true;
+  ASSERT_GE(ticks_until(mission, MissionPhase::kRecover, state, facts, 1000), 0);
+  facts.recovery_failed = true;
+  mission.update(state, facts, kStep_s);
+  EXPECT_EQ(mission.phase(), MissionPhase::kStopped);
+  EXPECT_EQ(mission.stop_reason(), StopReason::kRecoveryFailed);
+}
+
+// Turned away by the fall, it turns before it walks: it sees only what lies ahead.
+TEST(Mission, TurnsOnTheSpotWhenItLooksAway) {
+  Mission mission;
+  mission.reset(cross());
+  estimation::RobotState state;
+  ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 0);
+  state.yaw_rad = 2.5;
+  mission.update(state, healthy(), kStep_s);
+  EXPECT_EQ(mission.command().forward_m_s, 0.0);
+  EXPECT_EQ(mission.command().left_m_s, 0.0);
+  EXPECT_NEAR(mission.command().yaw_rate_rad_s, -0.5, 1e-12);
+}
+
 }  // namespace
 }  // namespace surefoot::autonomy

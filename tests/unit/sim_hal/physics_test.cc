@@ -99,7 +99,12 @@ TEST(Physics, PassiveSwingKeepsItsEnergy) {
   config.start.trunk_fixed = true;
   config.start.drop_height_m = 1.0;
   config.start.leg_rad = {0.4, 0.7, 0.5};
-  Rig rig({}, config, 1, without_friction());
+  robot::RobotModel model = without_friction();
+  // So far apart and beside so slim a trunk that no leg swings into anything.
+  model.abad_x_m = 0.6;
+  model.abad_y_m = 0.6;
+  model.trunk_size_m = {0.38, 0.02, 0.1};
+  Rig rig({}, config, 1, model);
   const double start_J = rig.simulator->truth().mechanical_energy_J;
   double worst_J = 0;
   double lowest_hip_rad = 1;
