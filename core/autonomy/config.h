@@ -73,12 +73,12 @@ struct MissionConfig {
   double heading_gain_1_s = 0;
   double max_lateral_m_s = 0;
   double max_yaw_rate_rad_s = 0;
-  double rest_s = 0;     // lying still before standing up: the gyro's bias is learned
-  double settle_s = 0;   // standing still before the first step
-  double stand_s = 0;    // mission stand: how long
-  double timeout_s = 0;  // of the whole mission
+  double rest_s = 0;           // lying still before standing up: the gyro's bias is learned
+  double settle_s = 0;         // standing still before the first step
+  double stand_s = 0;          // mission stand: how long
+  double timeout_s = 0;        // of the whole mission
   bool unseen_ground = false;  // the operator vouches for ground that the robot has not seen
-  bool recover = false;  // after a fall, and from any pose at the start: get up and go on
+  bool recover = false;        // after a fall, and from any pose at the start: get up and go on
   FixedVector<ScriptStep, kMaxScriptSteps> script;  // mission script: one after the other
 
   template <class Self, class Visitor>
