@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/math/gravity.h"
 #include "sim_hal/robot/articulation.h"
 #include "sim_hal/robot/contacts.h"
 #include "sim_hal/robot/ode_runtime.h"
@@ -22,7 +23,6 @@ namespace surefoot::sim {
 
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81;
 constexpr double kSlipThreshold_m_s = 0.005;  // below: creep of the contact solver
 
 // A random start: let go at this clearance; at rest when slower than this for kQuiet_s.

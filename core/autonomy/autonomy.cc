@@ -114,8 +114,7 @@ StopReason Autonomy::find_fault() {
   if (bus_.faulty_joints() != 0) return StopReason::kDriveFault;
   if (bus_.silent_joints() != 0) return StopReason::kDriveSilent;
   if (mission_.phase() == MissionPhase::kRecover) return StopReason::kNone;
-  const double cos_tilt = estimator_.state().R_OB(2, 2);
-  if (cos_tilt < math::cos(config_.safety.max_tilt_rad)) return StopReason::kTilt;
+  if (is_tilted(estimator_.state())) return StopReason::kTilt;
   if (!walking_ready_) return StopReason::kNone;
   if (locomotion_.blocked_s() > config_.safety.foothold_patience_s) return StopReason::kNoFoothold;
   return StopReason::kNone;
@@ -140,13 +139,16 @@ bool Autonomy::must_recover(const estimation::RobotState& state) const {
   return false;
 }
 
+bool Autonomy::is_tilted(const estimation::RobotState& state) const {
+  return state.R_OB(2, 2) < math::cos(config_.safety.max_tilt_rad);
+}
+
 // Tilted, or down on the belly with the feet beside it.
 bool Autonomy::has_fallen(const estimation::RobotState& state) {
-  const bool tilted = state.R_OB(2, 2) < math::cos(config_.safety.max_tilt_rad);
   const control::RecoveryConfig& config = config_.control.recovery;
   const bool low = walking_ready_ && height_over_feet_m(state) < config.collapsed_height_m;
   collapsed_s_ = low ? collapsed_s_ + tick_s_ : 0.0;
-  return tilted || collapsed_s_ >= config.collapsed_s;
+  return is_tilted(state) || collapsed_s_ >= config.collapsed_s;
 }
 
 void Autonomy::note_footing(const estimation::RobotState& state) {

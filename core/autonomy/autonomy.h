@@ -61,6 +61,7 @@ class Autonomy {
   void recover(const estimation::RobotState& state);
   void start_stand_up();
   bool must_recover(const estimation::RobotState& state) const;
+  bool is_tilted(const estimation::RobotState& state) const;
   bool has_fallen(const estimation::RobotState& state);
   void note_footing(const estimation::RobotState& state);
   const mapping::MapWindow* window() const;

@@ -106,7 +106,7 @@ void WindowClassifier::fill_filter(const CellRect& changed) {
     }
   }
   filter_.update(rect);
-  const CellRect all = rect.grown(kReach_cells, kSide);
+  const CellRect all = rect.grown(kFilterReach_cells, kSide);
   recomputed_cells_ = (all.x_end - all.x_begin) * (all.y_end - all.y_begin);
 }
 

@@ -30,8 +30,7 @@ class WindowClassifier {
  private:
   static constexpr std::int32_t kLattice = 8;
   static constexpr std::int32_t kBridge = 1;
-  static constexpr std::int32_t kReach_cells = TraversabilityFilter<kWindowSide>::kReach_cells;
-  static constexpr std::int32_t kRim = kReach_cells + kBridge;
+  static constexpr std::int32_t kRim = kFilterReach_cells + kBridge;
   static constexpr std::int32_t kSide =
       (kWindowSide + 2 * kRim + kLattice - 1 + kLattice - 1) / kLattice * kLattice;
 

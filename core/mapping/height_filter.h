@@ -40,7 +40,7 @@ class PaddedGrid {
  public:
   static constexpr std::int32_t kReach = 2;  // of the kernel
   static constexpr std::int32_t kPad = kLanes;
-  static constexpr std::int32_t kStride = kSide + 2 * kPad;
+  static constexpr std::int32_t stride() { return kSide + 2 * kPad; }
 
   // Every cell and the margin.
   void fill(Cell value) { cells_.fill(value); }
@@ -50,9 +50,10 @@ class PaddedGrid {
 
  private:
   static std::size_t place(std::int32_t y) {
-    return static_cast<std::size_t>((y + kReach) * kStride + kPad);
+    const std::int32_t index = (y + kReach) * stride() + kPad;
+    return static_cast<std::size_t>(index);
   }
-  std::array<Cell, static_cast<std::size_t>(kSide + 2 * kReach) * kStride> cells_{};
+  std::array<Cell, static_cast<std::size_t>(kSide + 2 * kReach) * stride()> cells_{};
 };
 
 template <std::int32_t kSide>
@@ -99,7 +100,7 @@ enum class Next : std::uint8_t { kAny, kOpposite };
 // reads two cells around it.
 template <class Filter, Next kNext, std::int32_t kSide>
 void apply_kernel(const FilterGrid<kSide>& in, FilterGrid<kSide>& out, const CellRect& rect) {
-  constexpr std::int32_t kStride = FilterGrid<kSide>::kStride;
+  constexpr std::int32_t kStride = FilterGrid<kSide>::stride();
   const auto five = [](const float* centre, Lanes middle) {
     const Lanes left = Filter::combine(load_lanes(centre - 2), load_lanes(centre - 1));
     const Lanes right = Filter::combine(load_lanes(centre + 1), load_lanes(centre + 2));

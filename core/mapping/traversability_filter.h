@@ -10,14 +10,14 @@
 
 namespace surefoot::mapping {
 
+// How far a cell reaches: opening 2 + 2, closing 2 + 2, edge 2, margin 2.
+inline constexpr std::int32_t kFilterReach_cells = 12;
+
 // Keeps every layer, so that update() recomputes what a change can reach and nothing else. All
 // layers depend on the set cells alone: the result has the same bits as after computing all anew.
 template <std::int32_t kSide>
 class TraversabilityFilter {
  public:
-  // How far a cell reaches: opening 2 + 2, closing 2 + 2, edge 2, margin 2.
-  static constexpr std::int32_t kReach_cells = 12;
-
   // Forgets all heights.
   void reset(const TraversabilityLimits& limits, double cell_size_m) {
     limits_ = limits;

@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "core/base/assert.h"
+#include "core/math/gravity.h"
 #include "core/robot/kinematics.h"
 
 namespace surefoot::timing {
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81;
 constexpr double kSoft_Nm_rad = 20.0;
 constexpr double kCreep_1_s = 10.0;
 constexpr double kGroundTolerance_m = 0.004;  // feet this near the lowest stand too

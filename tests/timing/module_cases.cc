@@ -6,13 +6,13 @@
 #include "core/control/locomotion.h"
 #include "core/estimation/estimator.h"
 #include "core/mapping/foothold.h"
+#include "core/math/gravity.h"
 #include "core/robot/kinematics.h"
 #include "tests/timing/work_case.h"
 
 namespace surefoot::timing {
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81;
 constexpr double kStep_s = 0.002;
 
 // A level window of 100 x 100 cells around O's origin where every cell has a height.

@@ -14,11 +14,11 @@
 #include <array>
 #include <cmath>
 
+#include "core/math/gravity.h"
 #include "core/robot/robot_model.h"
 
 namespace surefoot::apps::jump {
 
-inline constexpr double kGravity_m_s2 = 9.81;
 inline constexpr int kCoordinates = 7;
 inline constexpr int kPairJoints = 4;  // front hip, front knee, hind hip, hind knee
 inline constexpr int kPairForces = 4;  // front x, front z, hind x, hind z

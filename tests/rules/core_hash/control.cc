@@ -8,6 +8,7 @@
 #include "core/control/whole_body.h"
 #include "core/geometry/rotations.h"
 #include "tests/rules/core_hash/workloads.h"
+#include "tests/support/mini_cheetah.h"
 #include "tests/support/mpc_problems.h"
 
 namespace surefoot::tests {
@@ -57,31 +58,6 @@ void hash_convex_mpc(Fnv64& hash) {
 
 namespace {
 
-robot::RobotModel whole_robot() {
-  robot::RobotModel model;
-  model.trunk = {3.3, {0.01, 0, -0.01}, {0.011, 0.036, 0.043, 0, 0.001, 0}};
-  model.abad = {0.54, {0, 0.036, 0}, {381e-6, 560e-6, 444e-6, 58e-6, 0.45e-6, 0.95e-6}};
-  model.thigh = {0.634, {0, 0.016, -0.02}, {1983e-6, 2103e-6, 408e-6, 245e-6, 13e-6, 1.5e-6}};
-  model.shank = {0.064, {0, 0, -0.061}, {245e-6, 248e-6, 6e-6, 0, 0, 0}};
-  model.abad_x_m = 0.19;
-  model.abad_y_m = 0.049;
-  model.hip_offset_m = 0.062;
-  model.thigh_length_m = 0.209;
-  model.knee_offset_m = 0.004;
-  model.shank_length_m = 0.195;
-  model.foot_radius_m = 0.0175;
-  for (robot::Actuator& actuator : model.actuators) {
-    actuator.gear_ratio = 6.0;
-    actuator.rotor_inertia_kg_m2 = 63e-6;
-    actuator.rotor_mass_kg = 0.055;
-    actuator.torque_limit_Nm = 20.0;
-    actuator.no_load_speed_rad_s = 30.0;
-    actuator.min_rad = -3.0;
-    actuator.max_rad = 3.0;
-  }
-  return model;
-}
-
 control::WholeBodyConfig whole_body_config() {
   control::WholeBodyConfig config;
   config.friction = 0.4;
@@ -107,7 +83,7 @@ Vector3 random_vector(Random& random, double size) {
 
 void hash_whole_body(Fnv64& hash) {
   control::WholeBody whole_body;
-  whole_body.reset(whole_body_config(), whole_robot());
+  whole_body.reset(whole_body_config(), robot::full_mini_cheetah());
   Random random(15);
   for (int i = 0; i < 400; ++i) {
     control::WholeBodyState state;

@@ -9,25 +9,11 @@
 #include "core/robot/dynamics.h"
 #include "core/robot/kinematics.h"
 #include "tests/rules/core_hash/workloads.h"
+#include "tests/support/mini_cheetah.h"
 
 namespace surefoot::tests {
-namespace {
-
-robot::RobotModel mini_cheetah() {
-  robot::RobotModel model;
-  model.abad_x_m = 0.19;
-  model.abad_y_m = 0.049;
-  model.hip_offset_m = 0.062;
-  model.thigh_length_m = 0.209;
-  model.knee_offset_m = 0.004;
-  model.shank_length_m = 0.195;
-  return model;
-}
-
-}  // namespace
-
 void hash_kinematics(Fnv64& hash) {
-  const robot::RobotModel model = mini_cheetah();
+  const robot::RobotModel model = robot::full_mini_cheetah();
   Random random(4);
   for (int i = 0; i < 5000; ++i) {
     const std::size_t leg = random.below(4);
@@ -46,16 +32,7 @@ void hash_kinematics(Fnv64& hash) {
 }
 
 void hash_dynamics(Fnv64& hash) {
-  robot::RobotModel model = mini_cheetah();
-  model.trunk = {3.3, {0.01, 0, -0.01}, {0.011, 0.036, 0.043, 0, 0.001, 0}};
-  model.abad = {0.54, {0, 0.036, 0}, {381e-6, 560e-6, 444e-6, 58e-6, 0.45e-6, 0.95e-6}};
-  model.thigh = {0.634, {0, 0.016, -0.02}, {1983e-6, 2103e-6, 408e-6, 245e-6, 13e-6, 1.5e-6}};
-  model.shank = {0.064, {0, 0, -0.061}, {245e-6, 248e-6, 6e-6, 0, 0, 0}};
-  for (robot::Actuator& actuator : model.actuators) {
-    actuator.gear_ratio = 6.0;
-    actuator.rotor_inertia_kg_m2 = 63e-6;
-    actuator.rotor_mass_kg = 0.055;
-  }
+  const robot::RobotModel model = robot::full_mini_cheetah();
   robot::Dynamics dynamics;
   dynamics.reset(model);
   Random random(14);

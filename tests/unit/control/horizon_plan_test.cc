@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "tests/unit/robot/random_robot.h"
+#include "tests/support/mini_cheetah.h"
 
 namespace surefoot::control {
 namespace {

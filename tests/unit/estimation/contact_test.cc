@@ -8,7 +8,7 @@
 
 #include "core/geometry/rotations.h"
 #include "core/math/gravity.h"
-#include "tests/unit/robot/random_robot.h"
+#include "tests/support/mini_cheetah.h"
 
 namespace surefoot::estimation {
 namespace {

@@ -11,8 +11,8 @@
 #include "core/base/random.h"
 #include "core/geometry/rotations.h"
 #include "core/robot/kinematics.h"
+#include "tests/support/mini_cheetah.h"
 #include "tests/support/samples.h"
-#include "tests/unit/robot/random_robot.h"
 
 namespace surefoot::robot {
 namespace {

@@ -5,20 +5,10 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "tests/support/mini_cheetah.h"
 
 namespace surefoot::robot {
 namespace {
-
-RobotModel mini_cheetah() {
-  RobotModel model;
-  model.abad_x_m = 0.19;
-  model.abad_y_m = 0.049;
-  model.hip_offset_m = 0.062;
-  model.thigh_length_m = 0.209;
-  model.knee_offset_m = 0.004;
-  model.shank_length_m = 0.195;
-  return model;
-}
 
 LegVector random_angles(Random& random) {
   LegVector q;
@@ -29,7 +19,7 @@ LegVector random_angles(Random& random) {
 }
 
 TEST(Kinematics, ZeroAnglesHangStraightDown) {
-  const RobotModel model = mini_cheetah();
+  const RobotModel model = full_mini_cheetah();
   const Vector3 foot = foot_position_B_m(model, kHindLeft, LegVector::Zero());
   EXPECT_NEAR(foot[0], -0.19, 1e-15);
   EXPECT_NEAR(foot[1], 0.049 + 0.062 + 0.004, 1e-15);
@@ -38,12 +28,12 @@ TEST(Kinematics, ZeroAnglesHangStraightDown) {
 
 // research: stand (0, -0.8, 1.6) puts the foot 0.2815 m below the hip.
 TEST(Kinematics, StandPoseMatchesThePublishedHeight) {
-  const Vector3 foot = foot_position_B_m(mini_cheetah(), kFrontRight, {0.0, -0.8, 1.6});
+  const Vector3 foot = foot_position_B_m(full_mini_cheetah(), kFrontRight, {0.0, -0.8, 1.6});
   EXPECT_NEAR(foot[2], -0.2815, 1e-4);
 }
 
 TEST(Kinematics, JacobianAgreesWithFiniteDifferences) {
-  const RobotModel model = mini_cheetah();
+  const RobotModel model = full_mini_cheetah();
   Random random(1);
   constexpr double kStep = 1e-6;
   for (int trial = 0; trial < 2000; ++trial) {
@@ -64,7 +54,7 @@ TEST(Kinematics, JacobianAgreesWithFiniteDifferences) {
 }
 
 TEST(Kinematics, SolveInvertsForwardKinematics) {
-  const RobotModel model = mini_cheetah();
+  const RobotModel model = full_mini_cheetah();
   Random random(2);
   for (int trial = 0; trial < 5000; ++trial) {
     const std::size_t leg = random.below(4);
@@ -78,7 +68,7 @@ TEST(Kinematics, SolveInvertsForwardKinematics) {
 }
 
 TEST(Kinematics, TargetsOutOfReachArePulledOntoTheShellAndReported) {
-  const RobotModel model = mini_cheetah();
+  const RobotModel model = full_mini_cheetah();
   const Vector3 hip = hip_joint_B_m(model, kFrontLeft);
   const Vector3 target = hip + Vector3(0.3, 0.0, -0.5);
   const LegSolution solution = solve_leg(model, kFrontLeft, target);
@@ -89,14 +79,14 @@ TEST(Kinematics, TargetsOutOfReachArePulledOntoTheShellAndReported) {
 }
 
 TEST(Kinematics, ATargetOnTheAbductionAxisStillGivesFiniteAngles) {
-  const RobotModel model = mini_cheetah();
+  const RobotModel model = full_mini_cheetah();
   const LegSolution solution = solve_leg(model, kHindRight, abduction_joint_B_m(model, kHindRight));
   EXPECT_EQ(solution.status, Status::kOutOfRange);
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(std::isfinite(solution.q_rad[i]));
 }
 
 TEST(Kinematics, ShankAngularVelocityAgreesWithTheMovingKneeAndFoot) {
-  const RobotModel model = mini_cheetah();
+  const RobotModel model = full_mini_cheetah();
   Random random(3);
   constexpr double kStep = 1e-6;
   for (int trial = 0; trial < 500; ++trial) {
