@@ -207,19 +207,20 @@ void Locomotion::plan(const estimation::RobotState& state, MpcProblem& problem) 
 }
 
 // The forces that the predictive controller wants now, of the feet that stand. Before its first
-// plan the feet share the weight.
+// plan, and where the last one ended before now (the robot fell since), the feet share the weight.
 void Locomotion::plan_forces(const estimation::RobotState& state, const ForcePlan& plan) {
   double standing = 0;
   for (const LegStatus& leg : legs_) standing += leg.mode == LegMode::kStance ? 1.0 : 0.0;
   const double age_s = (state.stamp - plan.stamp).seconds();
-  constexpr double kLast = static_cast<double>(kMpcHorizon - 1);
-  const auto k = static_cast<std::size_t>(math::clamp(age_s / config_.mpc.step_s, 0.0, kLast));
+  const double steps = age_s / config_.mpc.step_s;
+  const bool covered = plan.valid && steps >= 0.0 && steps < static_cast<double>(kMpcHorizon);
+  const std::size_t k = covered ? static_cast<std::size_t>(steps) : 0;
   const double share_N = model_.total_mass_kg() * kGravity_m_s2 / larger(standing, 1.0);
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     Vector3& force = legs_[leg].force_O_N;
     force.setZero();
     if (legs_[leg].mode != LegMode::kStance) continue;
-    force = plan.valid ? plan.solution.force_O_N[k][leg] : Vector3(0.0, 0.0, share_N);
+    force = covered ? plan.solution.force_O_N[k][leg] : Vector3(0.0, 0.0, share_N);
   }
 }
 
