@@ -236,6 +236,12 @@ Config load_config_parts(const RunRequest& request, const fs::path& folder, Conf
   return config;
 }
 
+mapping::TraversabilityLimits class_limits(const Config& config) {
+  return mapping::traversability_limits(config.autonomy.mapping, config.robot,
+                                        config.autonomy.control.body.height_m,
+                                        config.autonomy.control.swing.clearance_m);
+}
+
 std::string config_text(const Config& config) { return ConfigWriter::write(config); }
 
 std::uint64_t config_hash(const Config& config) { return text_hash(config_text(config)); }

@@ -20,6 +20,7 @@
 
 #include "apps/common/config_node.h"
 #include "core/autonomy/config.h"
+#include "core/mapping/traversability.h"
 #include "core/robot/robot_model.h"
 #include "sim_hal/simulator_config.h"
 #include "sim_hal/world/world_spec.h"
@@ -41,6 +42,9 @@ struct Config {
     visit.group("scenario", self.sim.scenario);
   }
 };
+
+// Where the classes of the ground begin for this robot and its way of walking.
+mapping::TraversabilityLimits class_limits(const Config& config);
 
 // What a run was asked for. Kept in the record beside the resolved configuration.
 struct RunRequest {

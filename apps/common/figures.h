@@ -6,6 +6,7 @@
 
 #include "apps/common/drawing.h"
 #include "apps/common/height_grid.h"
+#include "apps/common/perceived_map.h"
 #include "apps/common/run_log.h"
 #include "core/robot/robot_model.h"
 #include "core/runtime/statistics.h"
@@ -15,14 +16,17 @@ namespace surefoot::apps {
 struct TerrainFigure {
   HeightGrid truth;      // empty (columns == 0) when there is no ground truth
   HeightGrid perceived;  // same raster as truth
+  ClassGrid classes;     // same raster
   Alignment O_in_W;
   double goal_x_m = 0;
   double lane_half_width_m = 0;  // 0: no lane
 };
 
-// True ground, perceived map and their difference at one scale, with the traces of body and feet
-// and with the footholds.
+// True ground with the traces of body and feet, perceived map, its classes with the footholds
+// (paper 002, figures 4 and 8), and the difference of the heights.
 Drawing terrain_figure(const RunLog& log, const TerrainFigure& figure);
+// A map and its classes.
+Drawing ground_figure(const HeightGrid& heights, const ClassGrid& classes);
 // Speed, tilt and height over time.
 Drawing motion_figure(const RunLog& log);
 // Joint torques against their limits, one row per joint of a leg.

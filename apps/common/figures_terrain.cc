@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "apps/common/axes.h"
 #include "apps/common/figures.h"
@@ -84,6 +85,48 @@ void colour_bar(Drawing& drawing, const Rectangle& map, Limits scale, Scale colo
                {12, palette::kInk, Anchor::kMiddle, false, true});
 }
 
+Colour class_colour(mapping::Traversability ground) {
+  switch (ground) {
+    case mapping::Traversability::kSteppable: return {152, 205, 158};
+    case mapping::Traversability::kUnsteppable: return {244, 196, 92};
+    case mapping::Traversability::kJumpOnly: return {120, 120, 190};
+    case mapping::Traversability::kImpassable: return {84, 28, 44};
+    case mapping::Traversability::kUnknown: break;
+  }
+  return palette::kUnknown;
+}
+
+Raster to_raster(const ClassGrid& grid) {
+  Raster raster{grid.columns, grid.rows, {}};
+  raster.pixels.reserve(grid.classes.size());
+  for (int row = grid.rows - 1; row >= 0; --row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      raster.pixels.push_back(class_colour(grid.at(column, row)));
+    }
+  }
+  return raster;
+}
+
+// Where the colour bar stands beside the maps of heights.
+void class_key(Drawing& drawing, const Rectangle& map) {
+  using mapping::Traversability;
+  static constexpr std::array<std::pair<Traversability, const char*>, 5> kRows{
+      {{Traversability::kSteppable, "steppable"},
+       {Traversability::kUnsteppable, "unsteppable"},
+       {Traversability::kJumpOnly, "jump only"},
+       {Traversability::kImpassable, "impassable"},
+       {Traversability::kUnknown, "unknown"}}};
+  double y = map.y + 10;
+  for (const auto& [ground, name] : kRows) {
+    const Rectangle box{map.right() + 18, y, 14, 14};
+    drawing.fill(box, class_colour(ground));
+    drawing.frame(box, {palette::kFaint, 1, false});
+    drawing.text({box.right() + 8, y + 11}, name,
+                 {11, palette::kInk, Anchor::kStart, false, false});
+    y += 24;
+  }
+}
+
 Limits height_scale(const TerrainFigure& figure) {
   std::vector<double> heights;
   for (const HeightGrid* grid : {&figure.truth, &figure.perceived}) {
@@ -125,28 +168,37 @@ class TerrainPanels {
 
   double panel_height() const { return height_ + 74; }
 
-  Axes panel(int row, const HeightGrid& grid, Limits scale, Scale colour, const std::string& title,
-             const std::string& bar_label, bool last) {
+  Axes heights(int row, const HeightGrid& grid, Limits scale, Scale colour,
+               const std::string& title, const std::string& bar_label, bool last) {
+    // Ink is lost on the dark low ground, red on the red side of the difference.
+    const Colour goal = colour == height_colour ? palette::kRed : palette::kInk;
+    Axes axes = panel(row, to_raster(grid, scale, colour), title, goal, last);
+    colour_bar(drawing_, axes.area(), scale, colour, bar_label);
+    return axes;
+  }
+
+  Axes classes(int row, const ClassGrid& grid, const std::string& title, bool last) {
+    Axes axes = panel(row, to_raster(grid), title, palette::kInk, last);
+    class_key(drawing_, axes.area());
+    return axes;
+  }
+
+ private:
+  Axes panel(int row, Raster raster, const std::string& title, Colour goal, bool last) {
     const Rectangle area{kLeft, 42 + row * panel_height(), width_, height_};
     Axes axes(drawing_, area, {grid_.x_m, grid_.right_m()}, {grid_.y_m, grid_.top_m()},
               {title, last ? "x [m]" : "", "y [m]", 10, 4, true});
-    drawing_.raster(area, to_raster(grid, scale, colour));
+    drawing_.raster(area, std::move(raster));
     if (figure_.lane_half_width_m > 0) {
       const Stroke lane{palette::kPaper, 1.2, true};
       axes.horizontal(figure_.lane_half_width_m, lane);
       axes.horizontal(-figure_.lane_half_width_m, lane);
     }
-    if (figure_.goal_x_m > 0) {
-      // Ink is lost on the dark low ground, red on the red side of the difference.
-      const Colour ink = colour == height_colour ? palette::kRed : palette::kInk;
-      axes.vertical(figure_.goal_x_m, {ink, 1.6, true});
-    }
+    if (figure_.goal_x_m > 0) axes.vertical(figure_.goal_x_m, {goal, 1.6, true});
     axes.frame();
-    colour_bar(drawing_, area, scale, colour, bar_label);
     return axes;
   }
 
- private:
   Drawing& drawing_;
   const TerrainFigure& figure_;
   const HeightGrid& grid_;
@@ -180,6 +232,7 @@ void draw_true_traces(const RunLog& log, Axes& axes) {
 struct FootholdCounts {
   int nominal = 0;
   int moved = 0;
+  int unseen = 0;
   int none = 0;
 };
 
@@ -196,23 +249,37 @@ FootholdCounts draw_footholds(Drawing& drawing, const std::vector<Touchdown>& to
       case control::FootholdReason::kMoved:
         ++counts.moved;
         if (!visible) break;
-        drawing.line(axes.at(nominal[0], nominal[1]), to, {palette::kPaper, 1.4, false});
-        drawing.ring(axes.at(nominal[0], nominal[1]), 2.6, {palette::kPaper, 1.2, false});
+        drawing.line(axes.at(nominal[0], nominal[1]), to, {palette::kInk, 1.2, false});
+        drawing.ring(axes.at(nominal[0], nominal[1]), 2.6, {palette::kInk, 1, false});
         drawing.dot(to, 3.2, palette::kRed);
         break;
       case control::FootholdReason::kNone:
         ++counts.none;
         if (visible) drawing.ring(to, 4, {palette::kPurple, 2, false});
         break;
-      case control::FootholdReason::kNominal:
       case control::FootholdReason::kUnseen:
       case control::FootholdReason::kMapOff:
+        ++counts.unseen;
+        if (visible) drawing.ring(to, 2.6, {palette::kBlue, 1.4, false});
+        break;
+      case control::FootholdReason::kNominal:
         ++counts.nominal;
-        if (visible) drawing.dot(to, 2.2, palette::kPaper);
+        if (visible) drawing.dot(to, 2.2, palette::kInk);
         break;
     }
   }
   return counts;
+}
+
+std::vector<LegendItem> foothold_legend(const FootholdCounts& counts) {
+  using Mark = LegendItem::Mark;
+  return {
+      {fmt::format("nominal place ({})", counts.nominal), {palette::kInk, 1, false}, Mark::kDot},
+      {fmt::format("moved to bear a foot ({})", counts.moved),
+       {palette::kRed, 1, false},
+       Mark::kDot},
+      {fmt::format("unseen ({})", counts.unseen), {palette::kBlue, 1.4, false}, Mark::kRing},
+      {fmt::format("none in reach ({})", counts.none), {palette::kPurple, 2, false}, Mark::kRing}};
 }
 
 }  // namespace
@@ -222,36 +289,40 @@ Drawing terrain_figure(const RunLog& log, const TerrainFigure& figure) {
   const HeightGrid& raster = with_truth ? figure.truth : figure.perceived;
   Drawing sizing(kWidth, 1);
   const double height = TerrainPanels(sizing, figure, raster).panel_height();
-  Drawing drawing(kWidth, (with_truth ? 3 : 1) * height + 32);
+  Drawing drawing(kWidth, (with_truth ? 4 : 2) * height + 32);
   TerrainPanels panels(drawing, figure, raster);
   const Limits heights = height_scale(figure);
 
   int row = 0;
   if (with_truth) {
     Axes axes =
-        panels.panel(row++, figure.truth, heights, height_colour,
-                     "True ground, with the true traces of body and feet", "height [m]", false);
+        panels.heights(row++, figure.truth, heights, height_colour,
+                       "True ground, with the true traces of body and feet", "height [m]", false);
     draw_true_traces(log, axes);
   }
-  Axes axes = panels.panel(row++, figure.perceived, heights, height_colour,
-                           "Perceived map and footholds", "height [m]", !with_truth);
-  const FootholdCounts counts = draw_footholds(drawing, log.touchdowns(), figure.O_in_W, axes);
-  axes.legend({{fmt::format("nominal place ({})", counts.nominal),
-                {palette::kFaint, 1, false},
-                LegendItem::Mark::kDot},
-               {fmt::format("moved to bear a foot ({})", counts.moved),
-                {palette::kRed, 1, false},
-                LegendItem::Mark::kDot},
-               {fmt::format("none in reach ({})", counts.none),
-                {palette::kPurple, 2, false},
-                LegendItem::Mark::kRing}});
+  panels.heights(row++, figure.perceived, heights, height_colour, "Perceived map", "height [m]",
+                 false);
+  Axes axes = panels.classes(row++, figure.classes, "Classes and footholds", !with_truth);
+  axes.legend(foothold_legend(draw_footholds(drawing, log.touchdowns(), figure.O_in_W, axes)));
   if (with_truth) {
     const HeightGrid off = difference(figure.perceived, figure.truth);
-    Axes last = panels.panel(row++, off, difference_scale(off), difference_colour,
-                             "Perceived minus true", "difference [m]", true);
+    Axes last = panels.heights(row++, off, difference_scale(off), difference_colour,
+                               "Perceived minus true", "difference [m]", true);
     last.legend({{"unseen", {palette::kUnknown, 1, false}, LegendItem::Mark::kBox},
                  {"goal", {palette::kInk, 1.6, true}}});
   }
+  return drawing;
+}
+
+Drawing ground_figure(const HeightGrid& heights, const ClassGrid& classes) {
+  TerrainFigure figure;
+  figure.perceived = heights;
+  Drawing sizing(kWidth, 1);
+  const double height = TerrainPanels(sizing, figure, heights).panel_height();
+  Drawing drawing(kWidth, 2 * height + 32);
+  TerrainPanels panels(drawing, figure, heights);
+  panels.heights(0, heights, height_scale(figure), height_colour, "Heights", "height [m]", false);
+  panels.classes(1, classes, "Classes", true);
   return drawing;
 }
 

@@ -1,6 +1,8 @@
 #include "apps/common/perceived_map.h"
 
 #include <cmath>
+#include <map>
+#include <memory>
 #include <set>
 #include <utility>
 
@@ -30,6 +32,8 @@ std::set<std::pair<int, int>> corridor(const RunLog& log, const Alignment& O_in_
   return cells;
 }
 
+int floor_divided(int value, int by) { return value / by - (value % by < 0 ? 1 : 0); }
+
 }  // namespace
 
 HeightGrid true_grid(const TrueGround& ground, const HeightGrid& raster) {
@@ -54,6 +58,31 @@ HeightGrid perceived_grid(const mapping::Mapper& mapper, const Alignment& O_in_W
           mapper.map().find(mapping::cell_index(p[0], p[1], mapper.cell_size_m()));
       if (cell == nullptr || !cell->has_height()) continue;
       grid.set(column, row, static_cast<double>(cell->height_m) + O_in_W.p_WO_m[2]);
+    }
+  }
+  return grid;
+}
+
+ClassGrid classify_map(const mapping::ControlMap& map, const mapping::MappingConfig& config,
+                       const mapping::TraversabilityLimits& limits, const Alignment& O_in_W,
+                       const HeightGrid& raster) {
+  constexpr int kSide = mapping::kWindowSide;
+  ClassGrid grid(raster);
+  const auto classifier = std::make_unique<mapping::WindowClassifier>();
+  classifier->reset(config, limits);
+  std::map<std::pair<int, int>, std::unique_ptr<mapping::MapWindow>> windows;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const auto p = O_in_W.to_odometry({raster.x_of(column), raster.y_of(row), 0});
+      const mapping::CellIndex cell = mapping::cell_index(p[0], p[1], config.cell_size_m);
+      const int tile_x = floor_divided(cell.ix, kSide);
+      const int tile_y = floor_divided(cell.iy, kSide);
+      auto& window = windows[{tile_x, tile_y}];
+      if (!window) {
+        window = std::make_unique<mapping::MapWindow>();
+        classifier->run(map, {tile_x * kSide + kSide / 2, tile_y * kSide + kSide / 2}, *window);
+      }
+      grid.classes[raster.index(column, row)] = window->at(cell).traversability;
     }
   }
   return grid;

@@ -3,12 +3,31 @@
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 #include "apps/common/height_grid.h"
 #include "apps/common/run_log.h"
 #include "core/mapping/mapper.h"
 
 namespace surefoot::apps {
+
+// Classes on the raster of a HeightGrid; all unknown at first.
+struct ClassGrid {
+  int columns = 0;
+  int rows = 0;
+  std::vector<mapping::Traversability> classes;
+
+  ClassGrid() = default;
+  explicit ClassGrid(const HeightGrid& raster)
+      : columns(raster.columns),
+        rows(raster.rows),
+        classes(raster.height_m.size(), mapping::Traversability::kUnknown) {}
+
+  mapping::Traversability at(int column, int row) const {
+    return classes[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                   static_cast<std::size_t>(column)];
+  }
+};
 
 struct MapError {
   double rmse_m = 0;          // of the measured cells; 0 where there is none
@@ -25,6 +44,12 @@ HeightGrid true_grid(const TrueGround& ground, const HeightGrid& raster);
 // with.
 HeightGrid perceived_grid(const mapping::Mapper& mapper, const Alignment& O_in_W,
                           const HeightGrid& raster);
+
+// What a robot that stands anywhere on the map would be told of its ground, nearest cell: the
+// classifier of the published window, run window beside window over the whole raster.
+ClassGrid classify_map(const mapping::ControlMap& map, const mapping::MappingConfig& config,
+                       const mapping::TraversabilityLimits& limits, const Alignment& O_in_W,
+                       const HeightGrid& raster);
 
 // The map's own cells whose centres lie within `half_width` of the body's trace, each against the
 // ground at its centre: error of the measured ones, and their share.

@@ -35,17 +35,23 @@ std::vector<NamedDrawing> run_pictures(const RunLog& log, const Config& config,
   terrain.goal_x_m = goal_x_m(config);
   terrain.lane_half_width_m = lane_half_width_m(config);
   terrain.perceived = perceived_grid(mapper, terrain.O_in_W, raster);
+  terrain.classes = ClassGrid(raster);
+  if (mapper.configured()) {
+    terrain.classes = classify_map(mapper.map(), config.autonomy.mapping, class_limits(config),
+                                   terrain.O_in_W, raster);
+  }
   if (ground) terrain.truth = true_grid(ground, raster);
-  return {{"terrain",
-           "White: where a foot was planned and went. Red: where it was sent because the nominal "
-           "place (ring) cannot bear it. Grey: never seen.",
-           terrain_figure(log, terrain)},
-          {"motion", "Dashed uprights: begin and end of walking.", motion_figure(log)},
-          {"torques", "Measured by the drives. Dashed: limit of the actuator.",
-           torque_figure(log, config.robot)},
-          {"gait", "Four seconds from the middle of the walk.", gait_figure(log)},
-          {"timing", "Execution times on this computer; they are not part of the run's hash.",
-           timing_figure(tasks)}};
+  return {
+      {"terrain",
+       "Classes are those of the map at the end. Red: where a foot was sent because the nominal "
+       "place (black ring) could not bear it. Grey: never seen.",
+       terrain_figure(log, terrain)},
+      {"motion", "Dashed uprights: begin and end of walking.", motion_figure(log)},
+      {"torques", "Measured by the drives. Dashed: limit of the actuator.",
+       torque_figure(log, config.robot)},
+      {"gait", "Four seconds from the middle of the walk.", gait_figure(log)},
+      {"timing", "Execution times on this computer; they are not part of the run's hash.",
+       timing_figure(tasks)}};
 }
 
 }  // namespace surefoot::apps

@@ -54,6 +54,7 @@ int bench_pictures() {
   TerrainFigure figure;
   figure.truth = HeightGrid(-0.6, -0.75, 4.2, 1.5, 0.015);
   figure.perceived = figure.truth;
+  figure.classes = ClassGrid(figure.truth);
   const auto begin = std::chrono::steady_clock::now();
   const std::size_t bytes = to_png(terrain_figure(log, figure)).size();
   const double ms =

@@ -228,9 +228,7 @@ int bench_mapping() {
       load_config({"mini_cheetah", "flat", "cross", "sim", 1, {}}, config_folder(), issues);
   if (!issues.empty()) return 3;
   const mapping::MappingConfig& map = config.autonomy.mapping;
-  const mapping::TraversabilityLimits limits =
-      mapping::traversability_limits(map, config.robot, config.autonomy.control.body.height_m,
-                                     config.autonomy.control.swing.clearance_m);
+  const mapping::TraversabilityLimits limits = class_limits(config);
   std::fputs("mapping: medians, one thread\n", stdout);
   const bool equal = bench_filter(limits, map.cell_size_m);
   Downward camera(map, mapping::sensor_model(config.robot.depth_camera), limits);

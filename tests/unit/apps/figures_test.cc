@@ -58,6 +58,7 @@ TerrainFigure synthetic_terrain(const RunLog& log) {
   TerrainFigure figure;
   figure.truth = HeightGrid(-0.6, -0.75, 4.2, 1.5, 0.015);
   figure.perceived = figure.truth;
+  figure.classes = ClassGrid(figure.truth);
   figure.goal_x_m = 3.0;
   figure.lane_half_width_m = 0.6;
   figure.O_in_W = align_at_start(log);
@@ -108,14 +109,16 @@ std::size_t count(const std::string& text, const std::string& what) {
   return found;
 }
 
-TEST(Figures, TerrainShowsThreePanelsAndTheReasonsOfMovedFootholds) {
+TEST(Figures, TerrainShowsFourPanelsAndTheReasonsOfMovedFootholds) {
   const RunLog log = synthetic_log();
   const Drawing drawing = terrain_figure(log, synthetic_terrain(log));
   keep(drawing, "terrain");
   const std::string svg = to_svg(drawing);
-  EXPECT_EQ(count(svg, "data:image/png;base64,"), 6u);  // three maps, three colour bars
+  EXPECT_EQ(count(svg, "data:image/png;base64,"), 7u);  // four maps, three colour bars
   EXPECT_NE(svg.find("Perceived minus true"), std::string::npos);
   EXPECT_NE(svg.find("moved to bear a foot ("), std::string::npos);
+  EXPECT_NE(svg.find("unseen (0)"), std::string::npos);
+  EXPECT_NE(svg.find("impassable"), std::string::npos);
   EXPECT_GT(log.touchdowns().size(), 50u);
 }
 
@@ -144,6 +147,7 @@ TEST(Figures, EmptyLogDrawsEmptyAxes) {
   TerrainFigure figure;
   figure.truth = HeightGrid(0, 0, 1, 1, 0.1);
   figure.perceived = figure.truth;
+  figure.classes = ClassGrid(figure.truth);
   EXPECT_GT(to_png(terrain_figure(log, figure)).size(), 100u);
   EXPECT_GT(to_png(motion_figure(log)).size(), 100u);
   EXPECT_GT(to_png(gait_figure(log)).size(), 100u);
