@@ -8,6 +8,7 @@
 #include "apps/common/version.h"
 #include "apps/surefoot-lab/bench.h"
 #include "apps/surefoot-lab/campaign.h"
+#include "apps/surefoot-lab/eval_traversability.h"
 #include "apps/surefoot-lab/export.h"
 #include "apps/surefoot-lab/jump/motion_command.h"
 
@@ -22,6 +23,7 @@ struct Arguments {
   std::string bench_name;
   std::filesystem::path out;
   MotionOptions motion;
+  TraversabilityOptions traversability;
 };
 
 CLI::App* add_campaign(CLI::App& app, Arguments& arguments) {
@@ -45,6 +47,21 @@ CLI::App* add_campaign(CLI::App& app, Arguments& arguments) {
   return command;
 }
 
+CLI::App* add_eval(CLI::App& app, Arguments& arguments) {
+  CLI::App* command = app.add_subcommand("eval", "experiments on data");
+  command->require_subcommand(1);
+  CLI::App* classes = command->add_subcommand(
+      "traversability", "height filter and classes of a height grid; JSON and a picture");
+  TraversabilityOptions& options = arguments.traversability;
+  classes->add_option("FILE", options.file, "ESRI ASCII grid (.asc) or 16-bit PNG")->required();
+  classes->add_option("--robot", options.robot, "name or file")->required();
+  classes->add_option("--scale", options.scale, "of lengths and heights")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  classes->add_option("--out", options.out, "folder for the results");
+  return classes;
+}
+
 int run_campaign(Arguments& arguments) {
   const auto seeds = parse_seeds(arguments.seeds);
   if (!seeds) {
@@ -64,6 +81,7 @@ int dispatch(int argc, char** argv, Stack& stack) {
   CLI::App* campaign_command = add_campaign(app, arguments);
   CLI::App* bench_command = app.add_subcommand("bench", "benchmarks: run, pictures, mapping, mpc");
   bench_command->add_option("NAME", arguments.bench_name, "one of them; all when left out");
+  CLI::App* traversability_command = add_eval(app, arguments);
   CLI::App* export_command = app.add_subcommand("export", "converts a record");
   export_command->add_option("RECORD", arguments.input, "record.mcap")->required();
   export_command->add_option("--to", arguments.to, "format")
@@ -82,6 +100,7 @@ int dispatch(int argc, char** argv, Stack& stack) {
   }
   if (campaign_command->parsed()) return run_campaign(arguments);
   if (bench_command->parsed()) return bench(arguments.bench_name, stack);
+  if (traversability_command->parsed()) return eval_traversability(arguments.traversability);
   if (motion_command->parsed()) return make_motion_file(arguments.motion);
   return export_command->parsed()
              ? export_record(arguments.input, arguments.to, arguments.out, stack)

@@ -38,6 +38,55 @@ TEST(Lab, CampaignCountsAndKeepsTheRecordsOfFailures) {
   EXPECT_TRUE(fs::exists(scratch.path("bad") / "seed-1" / "record.mcap"));
 }
 
+// Three levels: ground, a ledge of one step too many, a wall; and a corner without data.
+fs::path write_ledges(const fs::path& file, double cell_m) {
+  std::ofstream grid(file);
+  grid << "ncols 60\nnrows 40\nxllcorner 0\nyllcorner 0\ncellsize " << cell_m
+       << "\nNODATA_value -9999\n";
+  for (int row = 0; row < 40; ++row) {
+    for (int column = 0; column < 60; ++column) {
+      const bool missing = row < 10 && column < 10;
+      grid << (missing ? -9999.0 : column < 20 ? 0.0 : column < 40 ? 0.2 : 0.8) << ' ';
+    }
+    grid << '\n';
+  }
+  return file;
+}
+
+TEST(Lab, TraversabilityOfAGridCountsTheSeamsOfItsLedges) {
+  const Scratch scratch;
+  const fs::path file = write_ledges(scratch.path("ledges.asc"), 0.02);
+  const ProgramResult result =
+      run_program("surefoot-lab eval traversability " + file.string() +
+                  " --robot mini_cheetah --scale 0.75 --out " + scratch.text("eval"));
+  ASSERT_EQ(result.code, 0) << result.error;
+  const nlohmann::json json = read_json(scratch.path("eval") / "traversability.json");
+  EXPECT_NEAR(json["cell_m"].get<double>(), 0.015, 1e-12);
+  EXPECT_EQ(json["cells"], 2400);
+  EXPECT_EQ(json["known"], 2300);
+  // A ledge of 0.15 m and a wall of 0.45 m, each with two cells of seam above and two below. Of the
+  // outermost row too little is known: 6 of its patch of 17 lie outside.
+  EXPECT_EQ(json["classes"]["jump_only"]["cells"], 4 * 38);
+  EXPECT_EQ(json["classes"]["impassable"]["cells"], 4 * 38);
+  EXPECT_EQ(json["classes"]["unsteppable"]["cells"], 0);
+  EXPECT_GT(json["classes"]["steppable"]["cells"], 38 * 58 - 2 * 4 * 38 - 11 * 11);
+  EXPECT_TRUE(fs::exists(scratch.path("eval") / "traversability.png"));
+}
+
+TEST(Lab, TraversabilityRefusesWhatItCannotClassify) {
+  const Scratch scratch;
+  const std::string robot = " --robot mini_cheetah --out " + scratch.text("eval");
+  const ProgramResult absent =
+      run_program("surefoot-lab eval traversability /nonexistent/a.asc" + robot);
+  EXPECT_EQ(absent.code, 2);
+  EXPECT_NE(absent.error.find("/nonexistent/a.asc"), std::string::npos) << absent.error;
+  const fs::path file = write_ledges(scratch.path("ledges.asc"), 0.02);
+  const ProgramResult coarse =
+      run_program("surefoot-lab eval traversability " + file.string() + " --scale 20" + robot);
+  EXPECT_EQ(coarse.code, 2);
+  EXPECT_NE(coarse.error.find("cells of 0.4 m"), std::string::npos) << coarse.error;
+}
+
 TEST(Lab, ExportedCanLogEqualsTheOneOfTheRun) {
   const Scratch scratch;
   ASSERT_EQ(run_program("surefoot run" + kStand + "--can-log --report off --quiet --out " +

@@ -1,6 +1,5 @@
 // Opening, gradient map and their treatment of unknown cells against OpenCV, bit by bit.
 #include <cstdint>
-#include <limits>
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -8,13 +7,15 @@
 
 #include "core/base/random.h"
 #include "core/mapping/traversability_filter.h"
+#include "tests/support/opencv_filter.h"
 
 namespace surefoot::mapping {
 namespace {
 
 constexpr std::int32_t kSide = 100;
+using oracle::ellipse;
+using oracle::kNothing;
 using Filter = TraversabilityFilter<kSide>;
-constexpr float kNothing = std::numeric_limits<float>::max();  // as outside of OpenCV's images
 
 constexpr TraversabilityLimits kLimits{.max_slope = 0.5,
                                        .max_raise_m = 0.02,
@@ -22,8 +23,6 @@ constexpr TraversabilityLimits kLimits{.max_slope = 0.5,
                                        .max_unknown = 3,
                                        .max_step_m = 0.12,
                                        .max_jump_m = 0.27};
-
-cv::Mat ellipse() { return cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}); }
 
 // Heights on the filter's grid; every cell is unknown with the given chance in percent.
 cv::Mat random_heights(std::uint64_t seed, std::uint32_t unknown_percent) {
@@ -58,18 +57,6 @@ std::unique_ptr<Filter> filtered(const cv::Mat& heights) {
   return filter;
 }
 
-cv::Mat gradient_of(const cv::Mat& opened) {
-  cv::Mat gx;
-  cv::Mat gy;
-  cv::Sobel(opened, gx, CV_32F, 1, 0);
-  cv::Sobel(opened, gy, CV_32F, 0, 1);
-  cv::absdiff(gx, cv::Scalar::all(0), gx);
-  cv::absdiff(gy, cv::Scalar::all(0), gy);
-  cv::Mat larger;
-  cv::max(gx, gy, larger);
-  return larger;
-}
-
 TEST(FilterAgainstOpenCv, TheKernelIsEquationFour) {
   const cv::Mat kernel = ellipse();
   const char* rows[] = {"00100", "11111", "11111", "11111", "00100"};
@@ -84,7 +71,7 @@ TEST(FilterAgainstOpenCv, OpeningAndGradientOfKnownHeightsToTheBorder) {
     const auto filter = filtered(heights);
     cv::Mat opened;
     cv::morphologyEx(heights, opened, cv::MORPH_OPEN, ellipse());
-    const cv::Mat gradient = gradient_of(opened);
+    const cv::Mat gradient = oracle::filter(heights).gradient;
     for (std::int32_t y = 0; y < kSide; ++y) {
       for (std::int32_t x = 0; x < kSide; ++x) {
         ASSERT_EQ(filter->opened().row(y)[x], opened.at<float>(y, x)) << x << ' ' << y;
@@ -101,12 +88,7 @@ TEST(FilterAgainstOpenCv, UnknownCellsAreAsCellsOutsideOfTheImage) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const cv::Mat heights = random_heights(seed, static_cast<std::uint32_t>(2 * seed + 15));
     const auto filter = filtered(heights);
-    cv::Mat eroded;
-    cv::erode(heights, eroded, ellipse());
-    eroded.setTo(-kNothing, eroded == kNothing);
-    cv::Mat opened;
-    cv::dilate(eroded, opened, ellipse());
-    const cv::Mat gradient = gradient_of(opened);
+    const auto [opened, gradient] = oracle::filter(heights);
     const cv::Mat found = opened > -kNothing;
     cv::Mat all_around;  // Sobel has all nine
     cv::erode(found, all_around, cv::Mat());
