@@ -39,14 +39,16 @@ class ReplayCan final : public CanPort {
   CanCounters counters_;
 };
 
-class ReplayImu final : public ImuPort {
+// A sensor whose samples stand in a list of the tick's inputs.
+template <class Port, class Sample, auto kList>
+class ReplaySamples final : public Port {
  public:
-  explicit ReplayImu(const runtime::TickRecord& tick) : tick_(tick) {}
+  explicit ReplaySamples(const runtime::TickRecord& tick) : tick_(tick) {}
   void rewind() { delivered_ = 0; }
 
  private:
-  std::size_t do_receive(std::span<ImuSample> out) override {
-    const std::size_t count = deliver(tick_.inputs.imu, delivered_, out);
+  std::size_t do_receive(std::span<Sample> out) override {
+    const std::size_t count = deliver(tick_.inputs.*kList, delivered_, out);
     counters_.delivered += count;
     return count;
   }
@@ -56,24 +58,8 @@ class ReplayImu final : public ImuPort {
   std::size_t delivered_ = 0;
   SensorCounters counters_;
 };
-
-class ReplayPose final : public PosePort {
- public:
-  explicit ReplayPose(const runtime::TickRecord& tick) : tick_(tick) {}
-  void rewind() { delivered_ = 0; }
-
- private:
-  std::size_t do_receive(std::span<PoseSample> out) override {
-    const std::size_t count = deliver(tick_.inputs.pose, delivered_, out);
-    counters_.delivered += count;
-    return count;
-  }
-  SensorCounters do_counters() const override { return counters_; }
-
-  const runtime::TickRecord& tick_;
-  std::size_t delivered_ = 0;
-  SensorCounters counters_;
-};
+using ReplayImu = ReplaySamples<ImuPort, ImuSample, &autonomy::TickInputs::imu>;
+using ReplayPose = ReplaySamples<PosePort, PoseSample, &autonomy::TickInputs::pose>;
 
 class ReplayOperator final : public OperatorPort {
  public:
