@@ -9,21 +9,15 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
 
 #include "core/base/time.h"
 #include "core/robot/robot_model.h"
 #include "hal/api/board.h"
 #include "sim_hal/simulator_config.h"
+#include "sim_hal/simulator_error.h"
 #include "sim_hal/world/world_spec.h"
 
 namespace surefoot::sim {
-
-// Wrong configuration or an unreadable world file. what() names the file and line, or the key.
-class SimulatorError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 struct JointTruth {
   double position_rad = 0;

@@ -11,7 +11,7 @@
 #include "apps/common/config_root.h"
 #include "apps/common/figures.h"
 #include "apps/common/perceived_map.h"
-#include "sim_hal/simulator.h"
+#include "sim_hal/simulator_error.h"
 #include "sim_hal/world/height_map_file.h"
 
 namespace surefoot::apps {

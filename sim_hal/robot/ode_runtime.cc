@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "sim_hal/simulator.h"
+#include "sim_hal/simulator_error.h"
 
 namespace surefoot::sim {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "sim_hal/simulator.h"
+#include "sim_hal/simulator_error.h"
 #include "sim_hal/world/terrain.h"
 
 namespace surefoot::sim {

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string_view>
 
-#include "sim_hal/simulator.h"
+#include "sim_hal/simulator_error.h"
 
 namespace surefoot::sim {
 
