@@ -7,6 +7,7 @@
 #include "core/mapping/map_window.h"
 #include "core/mapping/mapper.h"
 #include "tests/rules/core_hash/workloads.h"
+#include "tests/support/mapping_setup.h"
 
 namespace surefoot::tests {
 namespace {
@@ -15,44 +16,18 @@ constexpr std::uint16_t kWidth_px = 160;
 constexpr std::uint16_t kHeight_px = 90;
 constexpr double kFocal_px = 84.0;
 
+// The steps of the scene are too high for a step here, so that more classes are seen.
+constexpr double kMaxStep_m = 0.03;
+constexpr double kMaxJump_m = 0.05;
+
 mapping::MappingConfig configuration() {
-  mapping::MappingConfig config;
-  config.enabled = true;
-  config.cell_size_m = 0.015;
-  config.max_height_above_body_m = 0.30;
-  config.self_inflation_m = 0.025;
-  config.depth_noise_floor_m = 0.002;
-  config.attitude_noise_rad = 0.003;
-  config.edge_filter_sigma = 3;
-  config.gate_sigma = 3;
-  config.process_noise_m2_s = 1e-6;
-  config.min_sigma_m = 0.002;
-  config.max_sigma_m = 0.1;
-  config.confirmations_up = 2;
-  config.confirmations_down = 3;
-  config.clear_sigma = 3;
-  config.clear_margin_m = 0.015;
-  config.clear_height_margin_m = 0.006;
-  config.clear_frames = 3;
-  config.ceiling_pixel_stride = 3;
-  config.bridge_holes = true;
-  config.foothold_max_unknown = 3;
-  config.foothold_max_raise_m = 0.02;
-  config.foothold_max_drop_m = 0.02;
-  config.foothold_max_slope = 0.5;
-  config.max_jump_m = 0.05;
+  mapping::MappingConfig config = mapping::test::recommended_config();
+  config.max_jump_m = kMaxJump_m;
   return config;
 }
 
-// The steps of the scene are too high for a step here, so that more classes are seen.
 mapping::TraversabilityLimits limits() {
-  const mapping::MappingConfig config = configuration();
-  return {.max_slope = config.foothold_max_slope,
-          .max_raise_m = config.foothold_max_raise_m,
-          .max_drop_m = config.foothold_max_drop_m,
-          .max_unknown = config.foothold_max_unknown,
-          .max_step_m = 0.03,
-          .max_jump_m = config.max_jump_m};
+  return mapping::test::limits_of(configuration(), kMaxStep_m);
 }
 
 mapping::CameraPose camera_pose(int frame) {

@@ -9,6 +9,7 @@
 #include "core/mapping/mapper.h"
 #include "core/robot/robot_model.h"
 #include "hal/api/depth_camera_port.h"
+#include "tests/support/mapping_setup.h"
 
 namespace surefoot::mapping::test {
 
@@ -51,9 +52,6 @@ CameraPose look(const Vector3& position_O_m, double yaw_rad, double down_rad, do
 // The D435 on Mini-Cheetah: 160 x 90, 87 x 58 degrees.
 Camera mini_cheetah_camera(const Vector3& position_O_m, double yaw_rad, double down_rad);
 robot::DepthCameraSpecification mini_cheetah_camera_specification();
-MappingConfig recommended_config();
-// With the step height of Mini-Cheetah.
-TraversabilityLimits limits_of(const MappingConfig& config);
 
 // random: nullptr for a frame without noise.
 void render(const Scene& scene, const Camera& camera, TimeNs stamp, Random* random,
