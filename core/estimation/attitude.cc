@@ -47,8 +47,7 @@ void AttitudeEstimator::gather_start(const Vector3& f) {
 
 void AttitudeEstimator::set_yaw(double yaw_rad) {
   const double turn = yaw_rad - math::atan2(R_OB_(1, 0), R_OB_(0, 0));
-  q_OB_ = geometry::normalised(geometry::from_rotation_vector(Vector3(0.0, 0.0, turn)) * q_OB_);
-  R_OB_ = geometry::to_matrix(q_OB_);
+  turn_O(Vector3(0.0, 0.0, turn));
 }
 
 // Rotation, in B, that would bring the predicted "up" onto the measured one; zero while
@@ -59,7 +58,7 @@ Vector3 AttitudeEstimator::gravity_correction(const Vector3& f) const {
   return (f / math::sqrt(f.squaredNorm())).cross(up_predicted_B);
 }
 
-Status AttitudeEstimator::update(const hal::ImuSample& sample, bool lying_still) {
+Status AttitudeEstimator::update(const hal::ImuSample& sample, bool lying_still, bool feet_carry) {
   const Vector3 gyro_B = R_BI_ * from_array(sample.angular_velocity_I_rad_s);
   const Vector3 force_B = R_BI_ * from_array(sample.specific_force_I_m_s2);
   if (!finite(gyro_B) || !finite(force_B)) return Status::kInvalid;
@@ -77,7 +76,7 @@ Status AttitudeEstimator::update(const hal::ImuSample& sample, bool lying_still)
     gyro_bias_B_rad_s_ +=
         (gyro_B - gyro_bias_B_rad_s_) * math::clamp(config_.still_bias_gain_1_s * step_s, 0.0, 1.0);
   }
-  const Vector3 error = gravity_correction(force_B);
+  const Vector3 error = feet_carry ? Vector3(Vector3::Zero()) : gravity_correction(force_B);
   gyro_bias_B_rad_s_ -= error * (config_.bias_gain_1_s2 * step_s);
   angular_velocity_B_rad_s_ = gyro_B - gyro_bias_B_rad_s_;
   const double gain = lying_still ? config_.still_correction_gain_1_s : config_.correction_gain_1_s;
@@ -90,11 +89,23 @@ Status AttitudeEstimator::update(const hal::ImuSample& sample, bool lying_still)
   return Status::kOk;
 }
 
+// An estimate turned by phi takes phi x g for acceleration, dt long; the feet undo it with
+// c = -g dt (phi x up), and up x c / g = -dt phi.
+void AttitudeEstimator::level_by_feet(const Vector3& correction_O_m_s) {
+  const Vector3 error_O_rad_s = Vector3::UnitZ().cross(correction_O_m_s) / kGravity_m_s2;
+  gyro_bias_B_rad_s_ -= R_OB_.transpose() * error_O_rad_s * config_.bias_gain_1_s2;
+  turn_O(error_O_rad_s * config_.correction_gain_1_s);
+}
+
 void AttitudeEstimator::correct_yaw(double yaw_rad, double bias_rad_s) {
   if (!initialised_) return;
   const Vector3 up_B = R_OB_.row(2).transpose();
   gyro_bias_B_rad_s_ += up_B * bias_rad_s;
-  q_OB_ = geometry::normalised(geometry::from_rotation_vector(Vector3(0, 0, yaw_rad)) * q_OB_);
+  turn_O(Vector3(0.0, 0.0, yaw_rad));
+}
+
+void AttitudeEstimator::turn_O(const Vector3& rotation_rad) {
+  q_OB_ = geometry::normalised(geometry::from_rotation_vector(rotation_rad) * q_OB_);
   R_OB_ = geometry::to_matrix(q_OB_);
 }
 

@@ -25,7 +25,12 @@ class AttitudeEstimator {
   // Takes the next sample. Roll and pitch start from the mean specific force of the first
   // kStartSamples in a row that look like rest (gravity alone within max_gravity_error_m_s2), yaw =
   // 0. kInvalid: a value is not finite, or the stamp is not after the last one; nothing changed.
-  Status update(const hal::ImuSample& sample, bool lying_still);
+  // feet_carry: the measured "up" does not pull; level_by_feet() does.
+  Status update(const hal::ImuSample& sample, bool lying_still, bool feet_carry = false);
+
+  // correction_O_m_s: what the feet have put right of the velocity that the accelerometer gave. On
+  // average it is the share of gravity that a wrong "up" takes for acceleration.
+  void level_by_feet(const Vector3& correction_O_m_s);
 
   // Turns about O's up axis and shifts the gyro's bias about it.
   void correct_yaw(double yaw_rad, double bias_rad_s);
@@ -48,6 +53,7 @@ class AttitudeEstimator {
   bool looks_like_rest(const Vector3& specific_force_B_m_s2) const;
   void gather_start(const Vector3& specific_force_B_m_s2);
   Vector3 gravity_correction(const Vector3& specific_force_B_m_s2) const;
+  void turn_O(const Vector3& rotation_rad);
 
   AttitudeConfig config_;
   Matrix3 R_BI_ = Matrix3::Identity();

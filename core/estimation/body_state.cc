@@ -24,6 +24,9 @@ void BodyStateEstimator::initialise(const Vector3& p_OB_m) {
   feet_O_m_.fill(Vector3::Zero());
   landmark_.fill(false);
   slips_ = 0;
+  carried_ = false;
+  fresh_ = true;
+  correction_O_m_s_.setZero();
   covariance_.setZero();
   covariance_(0, 0) = 1e-8;
   covariance_(1, 1) = 1e-4;
@@ -36,6 +39,7 @@ void BodyStateEstimator::update(const Vector3& acceleration_O_m_s2,
                                 const std::array<FootObservation, robot::kLegs>& feet,
                                 double step_s) {
   predict(acceleration_O_m_s2, feet, step_s);
+  const Vector3 predicted_O_m_s = v_O_m_s_;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     if (feet[leg].in_contact) {
       correct_with_foot(leg, feet[leg]);
@@ -43,6 +47,9 @@ void BodyStateEstimator::update(const Vector3& acceleration_O_m_s2,
       landmark_[leg] = false;
     }
   }
+  correction_O_m_s_ = fresh_ ? Vector3(Vector3::Zero()) : Vector3(v_O_m_s_ - predicted_O_m_s);
+  fresh_ = false;
+  carried_ = landmark_[0] || landmark_[1] || landmark_[2] || landmark_[3];
 }
 
 void BodyStateEstimator::move(const Vector3& shift_O_m, double yaw_rad) {

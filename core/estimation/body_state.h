@@ -50,6 +50,10 @@ class BodyStateEstimator {
 
   const Vector3& p_OB_m() const { return p_O_m_; }
   const Vector3& v_OB_m_s() const { return v_O_m_s_; }
+  // What the feet changed of the velocity in the last update. Zero in the first one after
+  // initialise(): at rest was only said.
+  const Vector3& correction_O_m_s() const { return correction_O_m_s_; }
+  bool carried() const { return carried_; }  // a foot was used in the last update
   // Foot observations left out as slipping since initialise().
   std::uint64_t slips() const { return slips_; }
   // Landmark of a foot in contact.
@@ -75,6 +79,9 @@ class BodyStateEstimator {
   std::array<Vector3, robot::kLegs> feet_O_m_;
   std::array<bool, robot::kLegs> landmark_{};
   Covariance covariance_ = Covariance::Zero();
+  Vector3 correction_O_m_s_ = Vector3::Zero();
+  bool carried_ = false;
+  bool fresh_ = true;  // no update since initialise()
   std::uint64_t slips_ = 0;
 };
 

@@ -35,7 +35,7 @@ std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
                               const std::array<GaitPhase, robot::kLegs>& gait, bool lying_still) {
   std::size_t refused = 0;
   for (const hal::ImuSample& sample : imu) {
-    if (!ok(attitude_.update(sample, lying_still))) ++refused;
+    if (!ok(attitude_.update(sample, lying_still, body_.carried()))) ++refused;
   }
   state_.stamp = stamp;
   state_.joints = joints;
@@ -50,6 +50,7 @@ std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
   const Vector3 acceleration_O =
       state_.R_OB * attitude_.specific_force_B_m_s2() - Vector3(0.0, 0.0, kGravity_m_s2);
   body_.update(acceleration_O, observations_, tick_s_);
+  attitude_.level_by_feet(body_.correction_O_m_s());
 
   state_.p_OB_m = body_.p_OB_m();
   state_.v_OB_m_s = body_.v_OB_m_s();

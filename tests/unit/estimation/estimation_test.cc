@@ -6,6 +6,8 @@
 #include "core/base/random.h"
 #include "core/estimation/attitude.h"
 #include "core/estimation/body_state.h"
+#include "core/estimation/estimator.h"
+#include "tests/support/mini_cheetah.h"
 
 namespace surefoot::estimation {
 namespace {
@@ -102,6 +104,48 @@ TEST(Attitude, AWrongTiltIsPulledBackByGravity) {
   EXPECT_NEAR(rpy[1], 0.0, 0.01);
 }
 
+// Feet that stand still undo what a wrong "up" makes of gravity; the tilt decays with the gain.
+TEST(Attitude, FeetThatStandLevelIt) {
+  AttitudeConfig config = attitude_config();
+  config.bias_gain_1_s2 = 0.0;
+  AttitudeEstimator estimator;
+  estimator.reset(config, robot::ImuSpecification{});
+  const Matrix3 wrong = geometry::from_roll_pitch_yaw(0.02, -0.03, 0.0);
+  const int first = start(estimator, wrong.transpose() * Vector3(0, 0, 9.81));
+  estimator.set_yaw(0.8);
+  const Vector3 force(0, 0, 9.81);  // level in truth
+  for (int i = first; i < first + 10000; ++i) {
+    ASSERT_EQ(estimator.update(sample_at(i, Vector3::Zero(), force), false, true), Status::kOk);
+    estimator.level_by_feet((estimator.R_OB() * force - Vector3(0, 0, 9.81)) * -0.001);
+  }
+  const Vector3 rpy = geometry::to_roll_pitch_yaw(estimator.R_OB());
+  EXPECT_NEAR(rpy[0], 0.02 * std::exp(-2.0), 2e-4);
+  EXPECT_NEAR(rpy[1], -0.03 * std::exp(-2.0), 2e-4);
+  EXPECT_NEAR(rpy[2], 0.8, 1e-3);
+}
+
+// A running trunk surges in step with its bouncing: the mean direction of the specific force is not
+// up although the mean force is. Feet that follow the true motion have nothing to correct.
+TEST(Attitude, ASurgeInStepWithABounceTiltsTheMeasuredUpButNotTheFeet) {
+  const auto pitch_after = [](bool by_feet) {
+    AttitudeEstimator estimator;
+    estimator.reset(attitude_config(), robot::ImuSpecification{});
+    const int first = start(estimator, Vector3(0, 0, 9.81));
+    for (int i = first; i < first + 20000; ++i) {
+      const double swing = std::sin(2.0 * 3.14159265358979 * 0.006666 * i);
+      const Vector3 acceleration(1.0 * swing, 0.0, 6.0 * swing);
+      const Vector3 force = acceleration + Vector3(0, 0, 9.81);  // the trunk stays level
+      EXPECT_EQ(estimator.update(sample_at(i, Vector3::Zero(), force), false, by_feet),
+                Status::kOk);
+      const Vector3 measured = estimator.R_OB() * force - Vector3(0, 0, 9.81);
+      if (by_feet) estimator.level_by_feet((acceleration - measured) * 0.001);
+    }
+    return geometry::to_roll_pitch_yaw(estimator.R_OB())[1];
+  };
+  EXPECT_GT(std::fabs(pitch_after(false)), 0.005);
+  EXPECT_LT(std::fabs(pitch_after(true)), 1e-9);
+}
+
 TEST(Attitude, RefusesWhatIsNotFiniteOrOutOfOrderAndStaysUnchanged) {
   AttitudeEstimator estimator;
   estimator.reset(attitude_config(), robot::ImuSpecification{});
@@ -192,6 +236,82 @@ TEST(BodyState, ARollingFootIsNotTakenForMotionOfTheGround) {
   }
   EXPECT_NEAR(estimator.v_OB_m_s()[0], 0.02, 1e-3);
   EXPECT_NEAR(estimator.p_OB_m()[0], 0.02, 2e-3);
+}
+
+// What the feet put right of a biased accelerometer adds up to what the bias did; a place that was
+// only said to be at rest says nothing of it.
+TEST(BodyState, TellsWhatTheFeetPutRight) {
+  BodyStateEstimator estimator;
+  estimator.reset(body_config());
+  estimator.initialise(Vector3(0, 0, 0.3));
+  std::array<FootObservation, 4> feet;
+  for (FootObservation& foot : feet) {
+    foot.in_contact = true;
+    foot.from_body_O_m = Vector3(0, 0, -0.3);
+  }
+  const Vector3 bias(0.2, -0.1, 0.05);
+  EXPECT_FALSE(estimator.carried());
+  Vector3 sum = Vector3::Zero();
+  for (int tick = 0; tick < 2000; ++tick) {
+    estimator.update(bias, feet, 0.002);
+    EXPECT_TRUE(estimator.carried());
+    sum += estimator.correction_O_m_s();
+  }
+  EXPECT_LT((sum + bias * 4.0).norm(), 0.02 * bias.norm() * 4.0);
+
+  for (FootObservation& foot : feet) foot.velocity_from_body_O_m_s = Vector3(0.1, 0, 0);
+  for (int tick = 0; tick < 10; ++tick) {
+    estimator.initialise(Vector3(0, 0, 0.3));
+    EXPECT_FALSE(estimator.carried());
+    estimator.update(bias, feet, 0.002);
+    EXPECT_EQ(estimator.correction_O_m_s().norm(), 0.0);
+  }
+  for (FootObservation& foot : feet) foot.in_contact = false;
+  estimator.update(bias, feet, 0.002);
+  EXPECT_FALSE(estimator.carried());
+  EXPECT_EQ(estimator.correction_O_m_s().norm(), 0.0);
+}
+
+// The heading is declared, the tilt stays, and from there on the gyro turns it.
+TEST(Estimator, SetYawTurnsTheHeadingAndKeepsTheTilt) {
+  EstimationConfig config;
+  config.attitude = attitude_config();
+  config.attitude.correction_gain_1_s = 0.0;
+  config.attitude.bias_gain_1_s2 = 0.0;
+  config.body = body_config();
+  config.contact.observer_gain_1_s = 200.0;
+  config.contact.touchdown_force_N = 1e6;
+  config.contact.surprise_force_N = 1e6;
+  Estimator estimator;
+  estimator.reset(config, robot::full_mini_cheetah(), 0.002);
+  const Matrix3 R = geometry::from_roll_pitch_yaw(0.1, -0.2, 0.0);
+  const Vector3 force = R.transpose() * Vector3(0, 0, 9.81);
+  std::array<actuation::JointState, robot::kJoints> joints;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    constexpr double kStanding_rad[3] = {0.0, -0.8, 1.6};
+    joints[i].position_rad = kStanding_rad[i % robot::kJointsPerLeg];
+    joints[i].valid = true;
+  }
+  const Vector3 rate_B = R.transpose() * Vector3(0, 0, 0.5);
+  int sample = 0;
+  const auto run = [&](int ticks, const Vector3& gyro) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      ++sample;
+      const hal::ImuSample imu = sample_at(2 * sample, gyro, force);
+      ASSERT_EQ(estimator.update(imu.stamp, {&imu, 1}, joints, {}, false), 0u);
+    }
+  };
+  run(60, Vector3::Zero());
+  ASSERT_TRUE(estimator.ready());
+  estimator.set_yaw(2.5);
+  EXPECT_NEAR(estimator.state().yaw_rad, 2.5, 1e-12);
+  const Matrix3 expected = geometry::from_roll_pitch_yaw(0.1, -0.2, 2.5);
+  EXPECT_LT((estimator.state().R_OB - expected).norm(), 1e-9);
+  EXPECT_LT((geometry::to_matrix(estimator.state().q_OB) - expected).norm(), 1e-9);
+  run(500, rate_B);  // half a radian in a second, beyond pi
+  EXPECT_NEAR(estimator.state().yaw_rad, 3.0, 1e-6);
+  run(500, rate_B);
+  EXPECT_NEAR(estimator.state().yaw_rad, 3.5 - 2.0 * 3.14159265358979324, 1e-6);
 }
 
 }  // namespace
