@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "core/base/fixed_vector.h"
 #include "core/base/parameters.h"
 
 namespace surefoot::sim {
@@ -47,14 +48,57 @@ struct StartConfig {
   }
 };
 
+// Where the obstacle stands, in W. It is taken away and put down here while the robot goes on: when
+// the trunk passes x = when_x_m for the first time after the last move, whichever way. The first
+// place is taken at the start.
+struct ObstaclePlace {
+  double x_m = 0;
+  double y_m = 0;
+  double yaw_rad = 0;
+  double when_x_m = 0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("x_m", self.x_m, {-100.0, 100.0}, "centre");
+    visit.real("y_m", self.y_m, {-100.0, 100.0}, "centre");
+    visit.real("yaw_rad", self.yaw_rad, {-3.2, 3.2}, "of its length");
+    visit.real("when_x_m", self.when_x_m, {-100.0, 100.0},
+               "moved here when the trunk passes; without meaning for the first");
+  }
+};
+
+inline constexpr std::size_t kMaxObstaclePlaces = 16;
+
+// A box that the robot must not touch. Every place is shifted and turned by draws.
+struct ObstacleConfig {
+  double length_m = 0;
+  double width_m = 0;
+  double height_m = 0;
+  double shift_m = 0;                                     // drawn from -shift_m to shift_m, x and y
+  double turn_rad = 0;                                    // drawn from -turn_rad to turn_rad
+  FixedVector<ObstaclePlace, kMaxObstaclePlaces> places;  // none: no obstacle
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("length_m", self.length_m, {0.01, 50.0}, "along its own x");
+    visit.real("width_m", self.width_m, {0.01, 50.0}, "across");
+    visit.real("height_m", self.height_m, {0.01, 5.0}, "over the level ground");
+    visit.real("shift_m", self.shift_m, {0.0, 5.0}, "drawn, either way, x and y");
+    visit.real("turn_rad", self.turn_rad, {0.0, 3.2}, "drawn, either way");
+    visit.list("places", self.places);
+  }
+};
+
 struct ScenarioConfig {
   StartConfig start;
   PushConfig push;
+  ObstacleConfig obstacle;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.group("start", self.start);
     visit.group("push", self.push);
+    visit.group("obstacle", self.obstacle);
   }
 };
 

@@ -16,6 +16,7 @@
 #include "sim_hal/sensors/sim_depth_camera_port.h"
 #include "sim_hal/sensors/sim_imu_port.h"
 #include "sim_hal/sensors/sim_pose_port.h"
+#include "sim_hal/world/obstacle.h"
 #include "sim_hal/world/terrain.h"
 #include "sim_hal/world/terrain_index.h"
 
@@ -116,12 +117,17 @@ struct Simulator::Implementation final : hal::Clock {
         robot(ode.id(), robot_model, configuration.start, step.seconds()),
         contacts(ode.id(), robot, terrain, index, configuration.physics),
         pushes(configuration.scenario.push, seed),
+        obstacle(configuration.scenario.obstacle, seed),
         can(robot_model, configuration.can, configuration.faults, seed),
         imu(robot_model.imu, configuration.imu, configuration.faults, seed),
         camera(robot_model.depth_camera, configuration.depth, configuration.faults, index, seed),
         tracking(robot_model.tracking_camera, configuration.tracking, configuration.faults, seed,
                  robot.trunk_position_m(), robot.trunk_rotation()) {
     dWorldSetContactMaxCorrectingVel(ode.id(), configuration.physics.max_correcting_velocity_m_s);
+    if (obstacle.exists()) {
+      index.show(&obstacle.box());
+      contacts.place_obstacle(obstacle.box());
+    }
     set_down(seed);
     mount_velocity_W = robot.trunk_point_velocity_W(imu.mount_B_m());
     exchange_can();
@@ -148,6 +154,7 @@ struct Simulator::Implementation final : hal::Clock {
   Articulation robot;
   Contacts contacts;
   Pushes pushes;
+  Obstacle obstacle;
   SimCanPort can;
   SimImuPort imu;
   SimDepthCameraPort camera;
@@ -157,6 +164,7 @@ struct Simulator::Implementation final : hal::Clock {
   std::array<double, robot::kJoints> torques_Nm{};
   std::array<double, robot::kLegs> slip_m{};
   std::uint64_t steps = 0;
+  std::uint64_t obstacle_steps = 0;
 };
 
 Status Simulator::Implementation::do_wait_until(TimeNs deadline) {
@@ -264,6 +272,8 @@ void Simulator::Implementation::advance() {
     dBodyAddForceAtPos(robot.body(0), force.x(), force.y(), force.z(), p.x(), p.y(), p.z());
   }
   step_bodies();
+  if (contacts.on_obstacle()) ++obstacle_steps;
+  if (obstacle.follow(robot.trunk_position_m().x())) contacts.place_obstacle(obstacle.box());
   ++steps;
   now = now + step;
   track_slip();
@@ -324,6 +334,11 @@ Truth Simulator::truth() const {
                              sim.contacts.shape(Contacts::shape_of(leg, Shape::kThigh)).touching;
   }
   truth.trunk_contact = sim.contacts.shape(Contacts::kTrunk).touching;
+  truth.obstacle_steps = sim.obstacle_steps;
+  if (sim.obstacle.exists()) {
+    const TerrainBox& box = sim.obstacle.box();
+    truth.obstacle = {box.x_m, box.y_m, std::atan2(box.sin_yaw, box.cos_yaw)};
+  }
   truth.mechanical_energy_J = robot.mechanical_energy_J(kGravity_m_s2);
   return truth;
 }
@@ -335,7 +350,10 @@ std::uint64_t Simulator::state_hash() const {
 }
 
 double Simulator::terrain_height_m(double x_m, double y_m) const {
-  return implementation_->index.height_m(x_m, y_m);
+  const double ground = implementation_->index.height_m(x_m, y_m);
+  const Obstacle& obstacle = implementation_->obstacle;
+  if (!obstacle.exists() || !obstacle.box().covers(x_m, y_m)) return ground;
+  return std::max(ground, obstacle.box().top_m);
 }
 
 TerrainFigures Simulator::terrain_figures() const {
@@ -350,7 +368,7 @@ TerrainFigures Simulator::terrain_figures() const {
     for (std::size_t i = 0; i < nx; ++i) {
       const double x = kCell_m * static_cast<double>(i);
       const double y = kCell_m * static_cast<double>(j) - kLaneWidth_m / 2;
-      const double height = terrain_height_m(x, y);
+      const double height = implementation_->index.height_m(x, y);
       z[j * nx + i] = height;
       sum += height;
       squares += height * height;

@@ -43,9 +43,11 @@ struct Truth {
   std::array<double, 3> angular_velocity_B_rad_s{};
   std::array<JointTruth, robot::kJoints> joints;
   std::array<FootTruth, robot::kLegs> feet;
-  bool trunk_contact = false;                    // the trunk's box touches the ground
+  bool trunk_contact = false;                    // the trunk's box touches the ground or obstacle
   std::array<bool, robot::kLegs> leg_contact{};  // thigh or shank touches the ground
-  double mechanical_energy_J = 0;                // kinetic (armature included) + potential
+  std::uint64_t obstacle_steps = 0;  // physics steps so far in which a part touched the obstacle
+  std::array<double, 3> obstacle{};  // x, y [m] and yaw [rad] in W; only where there is one
+  double mechanical_energy_J = 0;    // kinetic (armature included) + potential
 };
 
 // Heights on a 1 cm raster of the lane, x in [0, goal], |y| <= half the lane width.
@@ -94,7 +96,7 @@ class Simulator {
   Truth truth() const;
   // Of positions, orientations and velocities of all bodies, bit for bit.
   std::uint64_t state_hash() const;
-  // Highest ground at (x, y) in W. The true map for pictures and error figures.
+  // Highest ground or obstacle at (x, y) in W. The true map for pictures and error figures.
   double terrain_height_m(double x_m, double y_m) const;
   TerrainFigures terrain_figures() const;
   SimulatorCounters counters() const;

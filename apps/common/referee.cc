@@ -93,6 +93,10 @@ void Referee::observe(TimeNs stamp, const autonomy::Telemetry& telemetry, const 
   }
   // A robot that stopped by itself lies down on purpose: what follows is not a fall.
   if (!rules_.has_truth || phase_ == MissionPhase::kStopped) return;
+  if (truth.obstacle_steps > 0) {
+    end(Outcome::kCollision,
+        fmt::format("touched the obstacle at x = {:.2f} m, y = {:.2f} m", p_WB_m_[0], p_WB_m_[1]));
+  }
   const double tilt = tilt_of(truth.q_WB_wxyz);
   if (tilt > rules_.fall_tilt_rad) {
     fall(fmt::format("tilted {:.0f} degrees at x = {:.2f} m", tilt * 57.29578, p_WB_m_[0]));

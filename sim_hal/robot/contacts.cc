@@ -22,6 +22,17 @@ bool apart(const std::array<dReal, 6>& a, const std::array<dReal, 6>& b) {
   return a[0] > b[1] || b[0] > a[1] || a[2] > b[3] || b[2] > a[3] || a[4] > b[5] || b[4] > a[5];
 }
 
+dGeomID make_box(const TerrainBox& box) {
+  return dCreateBox(nullptr, 2 * box.half_length_m, 2 * box.half_width_m, box.top_m - box.bottom_m);
+}
+
+void place_box(dGeomID geom, const TerrainBox& box) {
+  dMatrix3 r{};
+  dRFromAxisAndAngle(r, 0, 0, 1, std::atan2(box.sin_yaw, box.cos_yaw));
+  dGeomSetRotation(geom, r);
+  dGeomSetPosition(geom, box.x_m, box.y_m, box.bottom_m + (box.top_m - box.bottom_m) / 2);
+}
+
 void place_capsule(dGeomID geom, const Vector3& middle) {
   dGeomSetOffsetPosition(geom, middle.x(), middle.y(), middle.z());
 }
@@ -49,6 +60,7 @@ Contacts::~Contacts() {
   dJointGroupDestroy(group_);
   for (const dGeomID geom : geoms_) dGeomDestroy(geom);
   for (const dGeomID geom : boxes_) dGeomDestroy(geom);
+  if (obstacle_ != nullptr) dGeomDestroy(obstacle_);
   dGeomDestroy(plane_);
 }
 
@@ -82,19 +94,20 @@ void Contacts::make_shapes(const Articulation& robot) {
 void Contacts::make_terrain(const Terrain& terrain) {
   plane_ = dCreatePlane(nullptr, 0, 0, 1, 0);
   for (const TerrainBox& box : terrain.boxes) {
-    const double height = box.top_m - box.bottom_m;
-    const dGeomID geom = dCreateBox(nullptr, 2 * box.half_length_m, 2 * box.half_width_m, height);
-    dMatrix3 r{};
-    dRFromAxisAndAngle(r, 0, 0, 1, std::atan2(box.sin_yaw, box.cos_yaw));
-    dGeomSetRotation(geom, r);
-    dGeomSetPosition(geom, box.x_m, box.y_m, box.bottom_m + height / 2);
-    boxes_.push_back(geom);
+    boxes_.push_back(make_box(box));
+    place_box(boxes_.back(), box);
   }
+}
+
+void Contacts::place_obstacle(const TerrainBox& box) {
+  if (obstacle_ == nullptr) obstacle_ = make_box(box);
+  place_box(obstacle_, box);
 }
 
 void Contacts::collide() {
   count_ = 0;
   self_count_ = 0;
+  on_obstacle_ = false;
   for (std::size_t i = 0; i < kShapes; ++i) collide_shape(i);
   collide_self();
 }
@@ -161,6 +174,17 @@ void Contacts::add_self(const dContactGeom& geometry) {
 }
 
 void Contacts::collide_shape(std::size_t shape) {
+  collide_ground(shape);
+  if (obstacle_ == nullptr) return;
+  std::array<dReal, 6> part{};
+  std::array<dReal, 6> obstacle{};
+  dGeomGetAABB(geoms_[shape], part.data());
+  dGeomGetAABB(obstacle_, obstacle.data());
+  if (apart(part, obstacle)) return;
+  if (collide_pair(shape, obstacle_) > 0) on_obstacle_ = true;
+}
+
+void Contacts::collide_ground(std::size_t shape) {
   dReal bounds[6];
   dGeomGetAABB(geoms_[shape], bounds);
   const double x0 = bounds[0] - kMargin_m;
@@ -181,11 +205,12 @@ void Contacts::collide_shape(std::size_t shape) {
   for (std::size_t k = 0; k < count; ++k) collide_pair(shape, boxes_[near[k]]);
 }
 
-void Contacts::collide_pair(std::size_t shape, dGeomID ground) {
+int Contacts::collide_pair(std::size_t shape, dGeomID ground) {
   std::array<dContactGeom, kMaxPerPair> found;
   const int count =
       dCollide(geoms_[shape], ground, kMaxPerPair, found.data(), sizeof(dContactGeom));
   for (int i = 0; i < count; ++i) add(shape, found[static_cast<std::size_t>(i)]);
+  return count;
 }
 
 // Capsules as balls a radius apart at most; the trunk, which only falls, as points of its surface.

@@ -50,6 +50,11 @@ class Contacts {
   Contacts(const Contacts&) = delete;
   Contacts& operator=(const Contacts&) = delete;
 
+  // Puts the obstacle there; it was nowhere before the first call.
+  void place_obstacle(const TerrainBox& box);
+  // Whether any part of the robot met it in the last collide().
+  bool on_obstacle() const { return on_obstacle_; }
+
   // Before the step: finds contacts and makes their joints.
   void collide();
   // How deep parts of the robot overlap in its present pose; 0: not at all.
@@ -73,8 +78,9 @@ class Contacts {
 
   void make_shapes(const Articulation& robot);
   void make_terrain(const Terrain& terrain);
+  void collide_ground(std::size_t shape);
   void collide_shape(std::size_t shape);
-  void collide_pair(std::size_t shape, dGeomID ground);
+  int collide_pair(std::size_t shape, dGeomID ground);  // number of contacts
   void collide_grid(std::size_t shape);
   void touch_grid(std::size_t shape, const Vector3& centre_m, double radius_m);
   void add(std::size_t shape, const dContactGeom& geometry);
@@ -90,6 +96,8 @@ class Contacts {
   dGeomID plane_ = nullptr;
   const HeightGrid& grid_;
   std::vector<dGeomID> boxes_;
+  dGeomID obstacle_ = nullptr;
+  bool on_obstacle_ = false;
   dJointGroupID group_ = nullptr;
   std::array<Record, kMaxPerStep> records_;
   std::array<dJointFeedback, kMaxPerStep> feedback_{};

@@ -294,6 +294,14 @@ double TerrainIndex::cast_grid(const Vector3& origin, const Vector3& direction, 
 }
 
 double TerrainIndex::cast(const Vector3& origin, const Vector3& direction, double t_max) const {
+  const double ground = cast_ground(origin, direction, t_max);
+  if (obstacle_ == nullptr) return ground;
+  const double box = cast_box(*obstacle_, origin, direction);
+  return box <= t_max ? std::min(ground, box) : ground;
+}
+
+double TerrainIndex::cast_ground(const Vector3& origin, const Vector3& direction,
+                                 double t_max) const {
   double plane = kNoHit;
   if (direction.z() < 0 && origin.z() > 0) {
     plane = -origin.z() / direction.z();

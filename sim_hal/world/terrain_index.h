@@ -24,6 +24,10 @@ class TerrainIndex {
   // The terrain must outlive the index.
   explicit TerrainIndex(const Terrain& terrain);
 
+  // A box that may be moved between queries, beside the terrain: rays hit it. It is no ground: the
+  // height queries know nothing of it. Null: none. It must outlive its use.
+  void show(const TerrainBox* obstacle) { obstacle_ = obstacle; }
+
   double height_m(double x, double y) const;
   // Upper bound of the ground inside the rectangle.
   double max_height_m(double x0, double y0, double x1, double y1) const;
@@ -37,6 +41,8 @@ class TerrainIndex {
   double cast(const Vector3& origin, const Vector3& direction, double t_max) const;
 
  private:
+  double cast_ground(const Vector3& origin, const Vector3& direction, double t_max) const;
+
   struct Cell {
     std::uint32_t first = 0;  // into items_
     std::uint32_t count = 0;
@@ -51,6 +57,7 @@ class TerrainIndex {
   double cast_grid(const Vector3& origin, const Vector3& direction, double t0, double t1) const;
 
   const Terrain& terrain_;
+  const TerrainBox* obstacle_ = nullptr;
   double x0_m_ = 0;
   double y0_m_ = 0;
   double max_m_ = 0;
