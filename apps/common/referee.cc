@@ -40,6 +40,7 @@ const char* describe(StopReason reason) {
     case StopReason::kMissionTimeout: return "the mission's time is over";
     case StopReason::kDriveFault: return "a drive reported an error";
     case StopReason::kRecoveryFailed: return "fell, and no roll brought it back on its belly";
+    case StopReason::kLiveLock: return "walks without getting nearer to its goal";
   }
   return "";
 }
@@ -50,6 +51,7 @@ Outcome outcome_of(StopReason reason) {
   switch (reason) {
     case StopReason::kNoFoothold: return Outcome::kNoPath;
     case StopReason::kMissionTimeout: return Outcome::kTimeout;
+    case StopReason::kLiveLock: return Outcome::kLiveLock;
     case StopReason::kTilt:
     case StopReason::kRecoveryFailed: return Outcome::kFall;
     case StopReason::kDriveSilent:

@@ -21,7 +21,8 @@ double lane_half_width_m(const Config& config) {
 
 double goal_x_m(const Config& config) {
   const autonomy::MissionConfig& mission = config.autonomy.mission;
-  return mission.kind == autonomy::MissionConfig::Kind::kCross ? mission.goal_x_m : -1.0;
+  if (mission.kind != autonomy::MissionConfig::Kind::kCross) return -1.0;
+  return mission.waypoints.empty() ? mission.goal_x_m : mission.waypoints.back().x_m;
 }
 
 std::vector<NamedDrawing> run_pictures(const RunLog& log, const Config& config,

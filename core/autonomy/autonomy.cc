@@ -20,6 +20,11 @@ double height_over_feet_m(const estimation::RobotState& state) {
   return height_m;
 }
 
+// From hip to hip, and as wide as the feet stand.
+obstacles::Footprint footprint(const robot::RobotModel& model) {
+  return {model.abad_x_m, model.abad_y_m + model.hip_offset_m + model.foot_radius_m};
+}
+
 }  // namespace
 
 Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& config) {
@@ -37,6 +42,12 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
       config.mapping, model, config.control.body.height_m, config.control.swing.clearance_m);
   const Status mapped = map_.reset(config.mapping, limits, model);
   if (!ok(mapped)) return mapped;
+  avoidance_.reset(config.obstacles, footprint(model));
+  velocity_ = control::VelocityCommand{};
+  changed_side_ = false;
+  if (config.mission.avoid) {
+    map_.watch_obstacles(config.obstacles, {.jump_only = true, .min_rise_m = limits.max_step_m});
+  }
   estimator_.reset(config.estimation, model, tick_s_);
   history_.clear();
   mission_.reset(config.mission);
@@ -218,14 +229,38 @@ void Autonomy::act(const estimation::RobotState& state) {
     case MissionPhase::kWalk:
     case MissionPhase::kArrived:
       if (!walking_ready_) begin_walking(state);
-      commands_ = locomotion_.update(state, window(), walk_command(), mpc_.plan(), tick_s_);
+      commands_ = locomotion_.update(state, window(), walk_command(state), mpc_.plan(), tick_s_);
       break;
     case MissionPhase::kStopped: commands_ = bus_.damping_commands(); break;
   }
 }
 
-control::WalkCommand Autonomy::walk_command() const {
-  return {mission_.command(), mission_.gait(),
+// What the mission wants, turned by the fields in reach. Half way to a live lock the other side is
+// tried, once.
+control::VelocityCommand Autonomy::avoiding(const estimation::RobotState& state) {
+  control::VelocityCommand command = mission_.command();
+  if (!config_.mission.avoid || mission_.phase() != MissionPhase::kWalk) return command;
+  const bool stuck =
+      config_.mission.live_lock_s > 0 && mission_.stuck_s() > 0.5 * config_.mission.live_lock_s;
+  if (stuck && !changed_side_) avoidance_.change_side();
+  changed_side_ = stuck;
+  const math::SinCos yaw = math::sin_cos(state.yaw_rad);
+  obstacles::Wish wish;
+  wish.velocity_O_m_s = Vector2(yaw.cos * command.forward_m_s - yaw.sin * command.left_m_s,
+                                yaw.sin * command.forward_m_s + yaw.cos * command.left_m_s);
+  wish.path_O = mission_.path_O();
+  wish.off_path_m = mission_.off_path_m(state);
+  const Vector2 v =
+      avoidance_.velocity_O_m_s(map_.fields(), {state.p_OB_m.head<2>(), state.yaw_rad}, wish);
+  if (v == wish.velocity_O_m_s) return command;
+  command.forward_m_s = yaw.cos * v[0] + yaw.sin * v[1];
+  command.left_m_s = yaw.cos * v[1] - yaw.sin * v[0];
+  return command;
+}
+
+control::WalkCommand Autonomy::walk_command(const estimation::RobotState& state) {
+  velocity_ = avoiding(state);
+  return {velocity_, mission_.gait(),
           config_.mission.unseen_ground ? control::UnseenGround::kAllowed
                                         : control::UnseenGround::kRefused};
 }
@@ -253,7 +288,7 @@ void Autonomy::report(const estimation::RobotState& state) {
   telemetry.q_OB_wxyz = {state.q_OB.w, state.q_OB.x, state.q_OB.y, state.q_OB.z};
   telemetry.v_OB_m_s = to_array(state.v_OB_m_s);
   telemetry.angular_velocity_B_rad_s = to_array(state.angular_velocity_B_rad_s);
-  const control::VelocityCommand& command = mission_.command();
+  const control::VelocityCommand& command = locomotion_acts() ? velocity_ : mission_.command();
   telemetry.velocity_command_B = {command.forward_m_s, command.left_m_s, command.yaw_rate_rad_s};
   for (std::size_t i = 0; i < robot::kJoints; ++i) {
     JointTelemetry& joint = telemetry.joints[i];
@@ -270,8 +305,24 @@ void Autonomy::report(const estimation::RobotState& state) {
   telemetry.tracking.position_error_O_m = to_array(drift.position_error_O_m());
   telemetry.tracking.yaw_error_rad = drift.yaw_error_rad();
   telemetry.tracking.samples = drift.counters();
+  report_obstacles(state);
   telemetry.replies_missed = bus_.counters().missed;
   telemetry.replies_invalid = bus_.counters().invalid;
+}
+
+void Autonomy::report_obstacles(const estimation::RobotState& state) {
+  if (!config_.mission.avoid) return;
+  ObstacleTelemetry& telemetry = outputs_.telemetry.obstacles;
+  const obstacles::Fields& fields = map_.fields();
+  static_cast<void>(telemetry.fields_O_m.resize(fields.size()));  // the same capacity
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    telemetry.fields_O_m[i] = {fields[i].centre_O_m[0], fields[i].centre_O_m[1]};
+  }
+  telemetry.side = avoidance_.side();
+  telemetry.counters = map_.field_counters();
+  telemetry.free_space_m = 0;
+  if (fields.empty()) return;
+  telemetry.free_space_m = avoidance_.free_space_m(fields, {state.p_OB_m.head<2>(), state.yaw_rad});
 }
 
 void Autonomy::report_legs(const estimation::RobotState& state) {

@@ -17,6 +17,7 @@
 #include "core/control/recovery.h"
 #include "core/control/stand_up.h"
 #include "core/estimation/estimator.h"
+#include "core/obstacles/avoidance.h"
 
 namespace surefoot::autonomy {
 
@@ -56,7 +57,8 @@ class Autonomy {
   StopReason find_fault();
   void act(const estimation::RobotState& state);
   bool locomotion_acts() const;
-  control::WalkCommand walk_command() const;
+  control::WalkCommand walk_command(const estimation::RobotState& state);
+  control::VelocityCommand avoiding(const estimation::RobotState& state);
   void begin_walking(const estimation::RobotState& state);
   void recover(const estimation::RobotState& state);
   void start_stand_up();
@@ -67,6 +69,7 @@ class Autonomy {
   const mapping::MapWindow* window() const;
   void send();
   void report(const estimation::RobotState& state);
+  void report_obstacles(const estimation::RobotState& state);
   void report_legs(const estimation::RobotState& state);
 
   robot::RobotModel model_;
@@ -83,6 +86,9 @@ class Autonomy {
   control::Recovery recovery_;
   control::Locomotion locomotion_;
   MpcTask mpc_;
+  obstacles::Avoidance avoidance_;
+  control::VelocityCommand velocity_;  // what locomotion was told last
+  bool changed_side_ = false;          // for the present standstill
   actuation::JointCommands commands_;
   bool walking_ready_ = false;  // stand-up is over, O has its place
   bool has_stood_ = false;      // O's origin is where it stood up first

@@ -7,6 +7,7 @@
 #include "core/control/config.h"
 #include "core/estimation/config.h"
 #include "core/mapping/mapping_config.h"
+#include "core/obstacles/config.h"
 
 namespace surefoot::autonomy {
 
@@ -60,13 +61,27 @@ struct ScriptStep {
 
 inline constexpr std::size_t kMaxScriptSteps = 24;
 
+// A place to go to in a straight line from the one before, in O.
+struct Waypoint {
+  double x_m = 0;
+  double y_m = 0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("x_m", self.x_m, {-1000.0, 1000.0}, "ahead of the start");
+    visit.real("y_m", self.y_m, {-1000.0, 1000.0}, "to its left");
+  }
+};
+
+inline constexpr std::size_t kMaxWaypoints = 16;
+
 struct MissionConfig {
   enum class Kind : std::uint8_t { kStand = 0, kCross, kScript };
   static constexpr const char* kKindNames[] = {"stand", "cross", "script"};
 
   Kind kind = Kind::kStand;
   control::GaitKind gait = control::GaitKind::kTrot;  // cross: how the legs move
-  double goal_x_m = 0;          // ahead of the start, along the start's heading
+  double goal_x_m = 0;          // ahead of the start, along the start's heading; see waypoints
   double goal_tolerance_m = 0;  // by the robot's own estimate
   double speed_m_s = 0;
   double line_gain_1_s = 0;  // back to the line from start to goal
@@ -79,6 +94,9 @@ struct MissionConfig {
   double timeout_s = 0;        // of the whole mission
   bool unseen_ground = false;  // the operator vouches for ground that the robot has not seen
   bool recover = false;        // after a fall, and from any pose at the start: get up and go on
+  bool avoid = false;          // goes round what it cannot step over (core/obstacles)
+  double live_lock_s = 0;  // without getting nearer to the goal for so long it gives up; 0: never
+  FixedVector<Waypoint, kMaxWaypoints> waypoints;   // cross: instead of goal_x_m, in this order
   FixedVector<ScriptStep, kMaxScriptSteps> script;  // mission script: one after the other
 
   template <class Self, class Visitor>
@@ -98,6 +116,10 @@ struct MissionConfig {
     visit.real("timeout_s", self.timeout_s, {1.0, 36000.0}, "of the whole mission");
     visit.boolean("unseen_ground", self.unseen_ground, "the operator vouches for unseen ground");
     visit.boolean("recover", self.recover, "get up after a fall and go on");
+    visit.boolean("avoid", self.avoid, "go round what it cannot step over");
+    visit.real("live_lock_s", self.live_lock_s, {0.0, 3600.0},
+               "not nearer to the goal for so long: give up; 0: never");
+    visit.list("waypoints", self.waypoints);
     visit.list("script", self.script);
   }
 };
@@ -107,6 +129,7 @@ struct AutonomyConfig {
   estimation::EstimationConfig estimation;
   mapping::MappingConfig mapping;
   control::ControlConfig control;
+  obstacles::ObstacleConfig obstacles;
   SafetyConfig safety;
   StartPadConfig start_pad;
   MissionConfig mission;
@@ -117,6 +140,7 @@ struct AutonomyConfig {
     visit.group("estimation", self.estimation);
     visit.group("mapping", self.mapping);
     visit.group("control", self.control);
+    visit.group("obstacles", self.obstacles);
     visit.group("safety", self.safety);
     visit.group("start_pad", self.start_pad);
     visit.group("mission", self.mission);

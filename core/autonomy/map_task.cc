@@ -43,7 +43,18 @@ Status MapTask::reset(const mapping::MappingConfig& config,
   clear(working_);
   clear(window_);
   window_digest_ = window_.digest();
+  watches_obstacles_ = false;
+  pool_.reset(obstacles::ObstacleConfig{});
+  fields_.clear();
+  field_counters_ = obstacles::FieldCounters{};
   return Status::kOk;
+}
+
+void MapTask::watch_obstacles(const obstacles::ObstacleConfig& config,
+                              const obstacles::BlockingRule& rule) {
+  watches_obstacles_ = true;
+  blocking_ = rule;
+  pool_.reset(config);
 }
 
 Status MapTask::assume_pad(const mapping::AssumedPad& pad) {
@@ -103,11 +114,14 @@ void MapTask::run() {
   if (ok(mapper_.publish(window_centre_O_m_[0], window_centre_O_m_[1], working_))) {
     working_digest_ = working_.digest();
   }
+  if (watches_obstacles_) pool_.update(working_, blocking_, window_centre_O_m_.head<2>());
 }
 
 void MapTask::publish() {
   window_ = working_;
   window_digest_ = working_digest_;
+  fields_ = pool_.fields();
+  field_counters_ = pool_.counters();
 }
 
 }  // namespace surefoot::autonomy

@@ -5,6 +5,7 @@
 
 #include "core/autonomy/pose_history.h"
 #include "core/mapping/mapper.h"
+#include "core/obstacles/field_pool.h"
 #include "core/robot/robot_model.h"
 #include "hal/api/depth_camera_port.h"
 
@@ -29,12 +30,17 @@ class MapTask {
   Status reset(const mapping::MappingConfig& config, const mapping::TraversabilityLimits& limits,
                const robot::RobotModel& model);
 
+  // Finds obstacles in every window from now on.
+  void watch_obstacles(const obstacles::ObstacleConfig& config,
+                       const obstacles::BlockingRule& rule);
+
   // The ground under the standing robot, vouched for by the operator.
   Status assume_pad(const mapping::AssumedPad& pad);
 
   // The ground around a place is not where the map has it any more. Not between release and
   // publish.
   Status forget(double x_O_m, double y_O_m, double half_side_m) {
+    pool_.forget_around({x_O_m, y_O_m}, half_side_m);
     return mapper_.forget(x_O_m, y_O_m, half_side_m);
   }
 
@@ -46,6 +52,8 @@ class MapTask {
   void publish();
 
   const mapping::MapWindow& window() const { return window_; }
+  const obstacles::Fields& fields() const { return fields_; }  // none where nothing is avoided
+  const obstacles::FieldCounters& field_counters() const { return field_counters_; }
   const mapping::Mapper& mapper() const { return mapper_; }
   const MapTaskCounters& counters() const { return counters_; }
   std::uint64_t window_digest() const { return window_digest_; }
@@ -63,6 +71,11 @@ class MapTask {
   mapping::Mapper mapper_;
   mapping::MapWindow working_;  // written by run()
   std::uint64_t working_digest_ = 0;
+  bool watches_obstacles_ = false;
+  obstacles::BlockingRule blocking_;
+  obstacles::FieldPool pool_;  // written by run()
+  obstacles::Fields fields_;   // what control sees
+  obstacles::FieldCounters field_counters_;
   mapping::MapWindow window_;  // what control sees
   std::uint64_t window_digest_ = 0;
 };

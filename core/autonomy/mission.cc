@@ -14,6 +14,60 @@ constexpr double kArrivedHold_s = 0.5;  // standing at the goal before the missi
 void Mission::reset(const MissionConfig& config) {
   *this = Mission{};
   config_ = config;
+  begin_line();
+}
+
+double Mission::Path::along_m(const estimation::RobotState& state) const {
+  return (state.p_OB_m.head<2>() - from_O_m).dot(direction_O);
+}
+
+double Mission::Path::left_m(const estimation::RobotState& state) const {
+  const Vector2 off = state.p_OB_m.head<2>() - from_O_m;
+  return direction_O[0] * off[1] - direction_O[1] * off[0];
+}
+
+double Mission::Path::to_go_m(const estimation::RobotState& state) const {
+  const Vector2 to = from_O_m + direction_O * length_m - state.p_OB_m.head<2>();
+  return math::sqrt(to.squaredNorm());
+}
+
+// From where the last line ended, or O, to the waypoint ahead or the goal.
+void Mission::begin_line() {
+  Vector2 to(config_.goal_x_m, 0.0);
+  if (!config_.waypoints.empty()) {
+    const Waypoint& waypoint = config_.waypoints[waypoint_];
+    to = Vector2(waypoint.x_m, waypoint.y_m);
+  }
+  const Vector2 way = to - path_.from_O_m;
+  path_.length_m = math::sqrt(way.squaredNorm());
+  if (path_.length_m > 0) path_.direction_O = way / path_.length_m;
+  path_.heading_rad = math::atan2(path_.direction_O[1], path_.direction_O[0]);
+  stuck_s_ = 0;
+  least_to_go_m_ = path_.length_m;
+}
+
+// false: that was the last.
+bool Mission::next_line() {
+  if (waypoint_ + 1 >= config_.waypoints.size()) return false;
+  path_.from_O_m += path_.direction_O * path_.length_m;
+  ++waypoint_;
+  begin_line();
+  return true;
+}
+
+void Mission::note_progress(double to_go_m, double step_s) {
+  constexpr double kProgress_m = 0.05;
+  stuck_s_ += step_s;
+  if (to_go_m > least_to_go_m_ - kProgress_m) return;
+  least_to_go_m_ = to_go_m;
+  stuck_s_ = 0;
+}
+
+bool Mission::at_end(const estimation::RobotState& state) const {
+  if (config_.waypoints.empty()) {
+    return path_.along_m(state) >= path_.length_m - config_.goal_tolerance_m;
+  }
+  return path_.to_go_m(state) <= config_.goal_tolerance_m;
 }
 
 void Mission::enter(MissionPhase phase) {
@@ -67,7 +121,7 @@ void Mission::update(const estimation::RobotState& state, const MissionFacts& fa
     }
     case MissionPhase::kWalk:
       if (config_.kind == MissionConfig::Kind::kScript) return follow_script(state, step_s);
-      return cross(state);
+      return cross(state, step_s);
     case MissionPhase::kArrived:
     case MissionPhase::kStopped: break;
   }
@@ -78,16 +132,26 @@ void Mission::arrive() {
   enter(MissionPhase::kArrived);
 }
 
-// Along the line y = 0 of O towards the goal.
-void Mission::cross(const estimation::RobotState& state) {
-  if (state.p_OB_m[0] >= config_.goal_x_m - config_.goal_tolerance_m) return arrive();
-  const double sideways = math::clamp(-config_.line_gain_1_s * state.p_OB_m[1],
+// Along the line in hand to its end, then the next.
+void Mission::cross(const estimation::RobotState& state, double step_s) {
+  if (at_end(state) && !next_line()) return arrive();
+  note_progress(path_.to_go_m(state), step_s);
+  if (config_.live_lock_s > 0 && stuck_s_ >= config_.live_lock_s) {
+    return stop(StopReason::kLiveLock);
+  }
+  const double sideways = math::clamp(-config_.line_gain_1_s * path_.left_m(state),
                                       -config_.max_lateral_m_s, config_.max_lateral_m_s);
+  // A goal is a line to cross, a waypoint a place to reach.
+  double along_m_s = config_.speed_m_s;
+  if (!config_.waypoints.empty()) {
+    along_m_s = math::clamp(config_.line_gain_1_s * (path_.length_m - path_.along_m(state)),
+                            -config_.max_lateral_m_s, config_.speed_m_s);
+  }
   // The command is in the body's heading: turn the wanted velocity of the line into it.
-  const math::SinCos yaw = math::sin_cos(state.yaw_rad);
-  command_.forward_m_s = yaw.cos * config_.speed_m_s + yaw.sin * sideways;
-  command_.left_m_s = yaw.cos * sideways - yaw.sin * config_.speed_m_s;
-  command_.yaw_rate_rad_s = turn_towards(state, 0.0);
+  const math::SinCos yaw = math::sin_cos(math::wrap_angle(state.yaw_rad - path_.heading_rad));
+  command_.forward_m_s = yaw.cos * along_m_s + yaw.sin * sideways;
+  command_.left_m_s = yaw.cos * sideways - yaw.sin * along_m_s;
+  command_.yaw_rate_rad_s = turn_towards(state, path_.heading_rad);
   if (yaw.cos >= kFacingCosine) return;
   command_.forward_m_s = 0.0;
   command_.left_m_s = 0.0;

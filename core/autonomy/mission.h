@@ -36,12 +36,35 @@ class Mission {
   }
   bool finished() const;
 
+  // Missions that go somewhere: unit vector along the line in hand, and how far the robot is to its
+  // left.
+  const Vector2& path_O() const { return path_.direction_O; }
+  double off_path_m(const estimation::RobotState& state) const { return path_.left_m(state); }
+  // For how long it has not come nearer to the end of the line in hand.
+  double stuck_s() const { return stuck_s_; }
+
  private:
+  // The line in hand of a mission that goes somewhere.
+  struct Path {
+    Vector2 from_O_m = Vector2::Zero();
+    Vector2 direction_O = Vector2(1, 0);
+    double length_m = 0;
+    double heading_rad = 0;
+
+    double along_m(const estimation::RobotState& state) const;
+    double left_m(const estimation::RobotState& state) const;
+    double to_go_m(const estimation::RobotState& state) const;
+  };
+
   void enter(MissionPhase phase);
   void stop(StopReason reason);
   void arrive();
-  void cross(const estimation::RobotState& state);
+  void cross(const estimation::RobotState& state, double step_s);
   void follow_script(const estimation::RobotState& state, double step_s);
+  void begin_line();
+  bool next_line();
+  bool at_end(const estimation::RobotState& state) const;
+  void note_progress(double to_go_m, double step_s);
   double turn_towards(const estimation::RobotState& state, double heading_rad) const;
 
   MissionConfig config_;
@@ -53,7 +76,11 @@ class Mission {
   double phase_s_ = 0;
   std::size_t script_step_ = 0;  // mission script: the line in hand
   double script_s_ = 0;          // time spent in it
-  double heading_rad_ = 0;       // mission script: what the commanded turns add up to
+  std::size_t waypoint_ = 0;     // mission cross: the one ahead
+  Path path_;
+  double least_to_go_m_ = 0;  // on the line in hand
+  double stuck_s_ = 0;
+  double heading_rad_ = 0;  // mission script: what the commanded turns add up to
 };
 
 }  // namespace surefoot::autonomy

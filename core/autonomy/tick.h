@@ -9,6 +9,7 @@
 #include "core/base/time.h"
 #include "core/control/foothold_reason.h"
 #include "core/estimation/tracking.h"
+#include "core/obstacles/field_pool.h"
 #include "core/robot/robot_model.h"
 #include "hal/api/can_port.h"
 #include "hal/api/depth_camera_port.h"
@@ -75,6 +76,7 @@ enum class StopReason : std::uint8_t {
   kMissionTimeout,
   kDriveFault,      // a drive reported an error code
   kRecoveryFailed,  // on the ground, and no roll has turned the robot over
+  kLiveLock,        // walks, and gets no nearer to the goal
 };
 
 // One leg, in the odometry frame O (docs/frames_and_units.md).
@@ -130,6 +132,22 @@ struct TrackingTelemetry {
   }
 };
 
+// What the robot goes round.
+struct ObstacleTelemetry {
+  FixedVector<std::array<double, 2>, obstacles::kMaxFields> fields_O_m;  // centres
+  int side = 0;             // on which it passes what is ahead: +1 left, -1 right, 0 nothing is
+  double free_space_m = 0;  // before the nearest field, at most their reach; 0: no fields
+  obstacles::FieldCounters counters;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("fields_O_m", self.fields_O_m);
+    visit("side", self.side);
+    visit("free_space_m", self.free_space_m);
+    visit("counters", self.counters);
+  }
+};
+
 // The visible state of the autonomy. Enough to draw a run; hashed and compared by replay.
 struct Telemetry {
   MissionPhase phase = MissionPhase::kEnableDrives;
@@ -142,6 +160,7 @@ struct Telemetry {
   std::array<LegTelemetry, robot::kLegs> legs;
   std::array<JointTelemetry, robot::kJoints> joints;
   TrackingTelemetry tracking;
+  ObstacleTelemetry obstacles;
   std::uint64_t depth_frames_mapped = 0;
   std::uint64_t map_digest = 0;  // hash of the published map window
   std::uint64_t replies_missed = 0;
@@ -159,6 +178,7 @@ struct Telemetry {
     visit("legs", self.legs);
     visit("joints", self.joints);
     visit("tracking", self.tracking);
+    visit("obstacles", self.obstacles);
     visit("depth_frames_mapped", self.depth_frames_mapped);
     visit("map_digest", self.map_digest);
     visit("replies_missed", self.replies_missed);

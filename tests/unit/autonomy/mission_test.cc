@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/rotations.h"
+#include "core/math/elementary.h"
 
 namespace surefoot::autonomy {
 namespace {
@@ -207,6 +208,55 @@ TEST(Mission, TurnsOnTheSpotWhenItLooksAway) {
   EXPECT_EQ(mission.command().forward_m_s, 0.0);
   EXPECT_EQ(mission.command().left_m_s, 0.0);
   EXPECT_NEAR(mission.command().yaw_rate_rad_s, -0.5, 1e-12);
+}
+
+TEST(Mission, GoesFromWaypointToWaypointAndArrivesAtTheLast) {
+  MissionConfig config = cross();
+  config.goal_tolerance_m = 0.1;
+  ASSERT_TRUE(ok(config.waypoints.push_back({2.0, 0.0})));
+  ASSERT_TRUE(ok(config.waypoints.push_back({2.0, 1.5})));
+  Mission mission;
+  mission.reset(config);
+  estimation::RobotState state;
+  ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 0);
+  state.p_OB_m = Vector3(2.0, 0.2, 0.3);  // on the end's level, but beside it
+  mission.update(state, healthy(), kStep_s);
+  EXPECT_EQ(mission.path_O(), Vector2(1, 0));
+  EXPECT_EQ(mission.off_path_m(state), 0.2);
+  EXPECT_LT(mission.command().left_m_s, 0);
+  EXPECT_NEAR(mission.command().forward_m_s, 0, 1e-12);
+  state.p_OB_m = Vector3(1.95, 0.05, 0.3);
+  mission.update(state, healthy(), kStep_s);
+  EXPECT_NEAR(mission.path_O()[0], 0, 1e-12);
+  EXPECT_NEAR(mission.path_O()[1], 1, 1e-12);
+  EXPECT_NEAR(mission.off_path_m(state), 0.05, 1e-12);
+  // It looks along the old line: first the turn, then the walk.
+  EXPECT_EQ(mission.command().forward_m_s, 0);
+  EXPECT_GT(mission.command().yaw_rate_rad_s, 0.4);
+  state.yaw_rad = 0.5 * math::kPi;
+  mission.update(state, healthy(), kStep_s);
+  EXPECT_NEAR(mission.command().forward_m_s, 0.5, 1e-12);
+  EXPECT_EQ(mission.phase(), MissionPhase::kWalk);
+  state.p_OB_m = Vector3(2.0, 1.45, 0.3);
+  mission.update(state, healthy(), kStep_s);
+  EXPECT_EQ(mission.phase(), MissionPhase::kArrived);
+}
+
+TEST(Mission, GivesUpWhenItGetsNoNearer) {
+  MissionConfig config = cross();
+  config.live_lock_s = 2.0;
+  Mission mission;
+  mission.reset(config);
+  estimation::RobotState state;
+  ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 0);
+  for (int tick = 0; tick < 900; ++tick) mission.update(state, healthy(), kStep_s);
+  state.p_OB_m[0] = 0.06;  // progress starts the time anew
+  for (int tick = 0; tick < 900; ++tick) mission.update(state, healthy(), kStep_s);
+  EXPECT_EQ(mission.phase(), MissionPhase::kWalk);
+  EXPECT_NEAR(mission.stuck_s(), 1.8, 0.01);
+  state.p_OB_m[0] = 0.09;  // to and fro is none
+  EXPECT_NEAR(ticks_until(mission, MissionPhase::kStopped, state, healthy(), 1000), 101, 2);
+  EXPECT_EQ(mission.stop_reason(), StopReason::kLiveLock);
 }
 
 }  // namespace
