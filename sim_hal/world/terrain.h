@@ -70,6 +70,8 @@ Terrain make_terrain(const WorldSpec& spec, std::uint64_t seed);
 void make_clutter(double height_m, double cover, Random& random, Terrain& terrain);
 void make_steps(double height_m, Random& random, Terrain& terrain);
 void make_ramps(double slope_rad, Random& random, Terrain& terrain);
+void make_platform(double height_m, Random& random, Terrain& terrain);
+void make_gap(double length_m, Random& random, Terrain& terrain);
 void make_height_map(const WorldSpec& spec, Terrain& terrain);
 
 // Part of the clutter field under boxes, on a 1 cm raster.

@@ -10,18 +10,27 @@
 
 namespace surefoot::sim {
 
-enum class Generator : std::uint8_t { kFlat = 0, kSteps, kRamps, kClutter, kHeightMap };
+enum class Generator : std::uint8_t {
+  kFlat = 0,
+  kSteps,
+  kRamps,
+  kClutter,
+  kHeightMap,
+  kPlatform,
+  kGap,
+};
 
-inline constexpr std::array<const char*, 5> kGeneratorNames{"flat", "steps", "ramps", "clutter",
-                                                            "heightmap"};
+inline constexpr std::array<const char*, 7> kGeneratorNames{
+    "flat", "steps", "ramps", "clutter", "heightmap", "platform", "gap"};
 
 // The world frame W has its origin on the ground under the robot's start, x towards the goal, y
 // left, z up. Every generated world keeps x < 0.4 m level at z = 0.
 struct WorldSpec {
   Generator generator = Generator::kFlat;
-  double height_m = 0;    // clutter: tallest box top; steps: tallest platform; unused otherwise
+  double height_m = 0;    // clutter: tallest box top; steps, platform: of it; unused otherwise
   double cover = 0;       // clutter: fraction of the field under boxes
   double slope_rad = 0;   // ramps: steepest slope
+  double length_m = 0;    // gap: from edge to edge
   double scale = 1;       // heightmap: factor on x, y and z of the file
   double friction = 0.6;  // Coulomb coefficient of the whole ground
   std::string file;       // heightmap: .asc, or .png with a .yaml beside it; unused otherwise
@@ -29,9 +38,10 @@ struct WorldSpec {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.choice("generator", self.generator, kGeneratorNames, "how the ground is made");
-    visit.real("height_m", self.height_m, {0.0, 0.5}, "clutter, steps: greatest height");
+    visit.real("height_m", self.height_m, {0.0, 0.5}, "clutter, steps: greatest; platform: of it");
     visit.real("cover", self.cover, {0.0, 0.6}, "clutter: part of the field under boxes");
     visit.real("slope_rad", self.slope_rad, {0.0, 0.45}, "ramps: steepest slope");
+    visit.real("length_m", self.length_m, {0.0, 1.0}, "gap: from edge to edge");
     visit.real("scale", self.scale, {0.001, 100.0}, "heightmap: factor on x, y and z");
     visit.real("friction", self.friction, {0.01, 2.0}, "Coulomb coefficient");
     if constexpr (requires { visit.text("file", self.file, "doc"); }) {
@@ -45,5 +55,6 @@ inline constexpr double kGoalX_m = 3.0;
 inline constexpr double kLaneWidth_m = 1.2;
 inline constexpr double kFieldBegin_m = 0.4;
 inline constexpr double kFieldLength_m = 2.3;
+inline constexpr double kEdgeX_m = 1.0;  // of platform and gap, on the line to the goal
 
 }  // namespace surefoot::sim

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "sim_hal/simulator_error.h"
 #include "sim_hal/world/terrain.h"
 #include "sim_hal/world/terrain_index.h"
 #include "tests/unit/sim_hal/sim_fixture.h"
@@ -139,6 +140,44 @@ TEST(World, StartAndGoalAreClearInEveryWorld) {
   }
 }
 
+TEST(World, PlatformsBeginWhereTheyShouldAndAreLargerThanTheRobot) {
+  double turned = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Terrain terrain = make_terrain(spec(Generator::kPlatform, 0.13), seed);
+    ASSERT_EQ(terrain.boxes.size(), 1u);
+    const TerrainBox& box = terrain.boxes[0];
+    EXPECT_EQ(box.top_m, 0.13);
+    EXPECT_GE(2 * box.half_length_m, 1.6);
+    EXPECT_GE(2 * box.half_width_m, 1.2);
+    EXPECT_EQ(terrain.height_m(kEdgeX_m - 1e-6, 0), 0);
+    EXPECT_EQ(terrain.height_m(kEdgeX_m + 1e-6, 0), 0.13);
+    for (double x = 1.1; x < 2.5; x += 0.05) {
+      for (const double y : {-0.4, 0.0, 0.4}) EXPECT_EQ(terrain.height_m(x, y), 0.13);
+    }
+    turned = std::max(turned, std::fabs(box.sin_yaw));
+  }
+  EXPECT_GT(turned, 0.03);
+  EXPECT_LT(turned, 0.053);
+  EXPECT_THROW(make_terrain(spec(Generator::kPlatform), 1), SimulatorError);
+}
+
+TEST(World, GapsAreAsWideAsStated) {
+  for (const double length : {0.1, 0.15, 0.2, 0.35}) {
+    WorldSpec world = spec(Generator::kGap);
+    world.length_m = length;
+    const Terrain terrain = make_terrain(world, 3);
+    for (const double y : {-1.4, -0.3, 0.0, 0.7}) {
+      EXPECT_EQ(terrain.height_m(kEdgeX_m - 1e-6, y), 0);
+      EXPECT_NEAR(terrain.height_m(kEdgeX_m + length + 1e-6, y), 0, 1e-4);
+      for (double x = 0.011; x < length - 0.01; x += 0.01) {
+        EXPECT_LE(terrain.height_m(kEdgeX_m + x, y), -0.3) << x;
+        EXPECT_GE(terrain.height_m(kEdgeX_m + x, y), -0.5) << x;
+      }
+    }
+  }
+  EXPECT_THROW(make_terrain(spec(Generator::kGap), 1), SimulatorError);
+}
+
 TEST(World, SeedsDiffer) {
   const Terrain a = make_terrain(spec(Generator::kClutter, 0.05, 0.5), 1);
   const Terrain b = make_terrain(spec(Generator::kClutter, 0.05, 0.5), 2);
@@ -146,8 +185,11 @@ TEST(World, SeedsDiffer) {
 }
 
 TEST(World, IndexKnowsTheTerrainsHeights) {
-  for (const WorldSpec& world : {spec(Generator::kClutter, 0.1, 0.5), spec(Generator::kSteps, 0.08),
-                                 spec(Generator::kRamps, 0, 0, 0.26)}) {
+  WorldSpec gap = spec(Generator::kGap);
+  gap.length_m = 0.2;
+  for (const WorldSpec& world :
+       {spec(Generator::kClutter, 0.1, 0.5), spec(Generator::kSteps, 0.08),
+        spec(Generator::kRamps, 0, 0, 0.26), spec(Generator::kPlatform, 0.13), gap}) {
     const Terrain terrain = make_terrain(world, 6);
     const TerrainIndex index(terrain);
     Random random(1);
