@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "apps/common/config_motions.h"
 #include "apps/common/config_reader.h"
 #include "apps/common/config_writer.h"
 
@@ -228,9 +229,11 @@ Config load_config_parts(const RunRequest& request, const fs::path& folder, Conf
     add_file("--mission", "missions", request.mission, folder, tree, issues);
   }
   for (const std::string& set : request.sets) apply_override(tree, set, issues);
+  load_motions(tree, folder, issues);
   Config config;
   ConfigIssues read;
   ConfigReader::read(tree, config, read);
+  if (read.empty()) check_motions(config.autonomy.motions, config.robot, read);
   read = without_absent_groups(std::move(read), request, issues);
   issues.insert(issues.end(), read.begin(), read.end());
   return config;

@@ -154,6 +154,14 @@ class Run {
     facts_.wall_time_s = loop.wall_time_s;
     facts_.measures = measure(*log_, goal_x_m(config_));
     facts_.measures.recovery = recovery_figures();
+    facts_.jump = measure_jumps(*log_, torque_limits_Nm());
+    if (facts_.verdict.outcome == Outcome::kNoPath && facts_.jump.refusals > 0) {
+      facts_.verdict.reason += fmt::format(" ({})", facts_.jump.last_refusal);
+    }
+    if (facts_.verdict.outcome == Outcome::kGoal && facts_.jump.landed_feet < 4) {
+      facts_.verdict = {Outcome::kFall,
+                        fmt::format("arrived, but landed on {} feet", facts_.jump.landed_feet)};
+    }
     facts_.terrain = backend_->terrain();
     if (backend_->has_truth()) {
       facts_.map = map_error(stack_.autonomy().map().mapper(), align_at_start(*log_), *log_,
@@ -173,13 +181,17 @@ class Run {
     facts_.tracking = stack_.autonomy().estimator().drift().counters();
   }
 
-  RecoveryFigures recovery_figures() const {
+  std::array<double, robot::kJoints> torque_limits_Nm() const {
     std::array<double, robot::kJoints> limit_Nm{};
     for (std::size_t i = 0; i < robot::kJoints; ++i) {
       limit_Nm[i] = config_.robot.actuators[i % robot::kJointsPerLeg].torque_limit_Nm;
     }
+    return limit_Nm;
+  }
+
+  RecoveryFigures recovery_figures() const {
     const double height_m = config_.autonomy.control.body.height_m - config_.robot.foot_radius_m;
-    return measure_recovery(*log_, height_m, limit_Nm);
+    return measure_recovery(*log_, height_m, torque_limits_Nm());
   }
 
   TrueGround ground() const {

@@ -81,6 +81,7 @@ std::vector<MemoryRow> memory_table() {
       {"estimation", sizeof(estimation::Estimator) + sizeof(autonomy::PoseHistory)},
       {"control",
        sizeof(control::Locomotion) + sizeof(control::StandUp) + sizeof(autonomy::MpcTask)},
+      {"jumping", sizeof(autonomy::JumpPilot)},
       {"actuation", sizeof(actuation::JointBus)},
       {"mission", sizeof(autonomy::Mission)},
       {"configuration", sizeof(robot::RobotModel) + sizeof(autonomy::AutonomyConfig)},

@@ -34,6 +34,13 @@ Json counters_json(const RunFacts& facts) {
           {"samples_dropped", facts.samples_dropped}};
 }
 
+Json jump_json(const JumpFigures& jump) {
+  return {{"attempts", jump.attempts},       {"jumps", jump.jumps},
+          {"refusals", jump.refusals},       {"last_refusal", jump.last_refusal},
+          {"landed_feet", jump.landed_feet}, {"max_torque_share", jump.max_torque_share},
+          {"flight_s", jump.flight_s},       {"landing_speed_m_s", jump.landing_speed_m_s}};
+}
+
 }  // namespace
 
 std::string hex16(std::uint64_t value) { return fmt::format("{:016x}", value); }
@@ -69,6 +76,7 @@ Json summary_json(const RunFacts& facts) {
                       {"stood", m.recovery.stood},
                       {"time_to_stand_s", m.recovery.time_to_stand_s},
                       {"max_torque_share", m.recovery.max_torque_share}};
+  json["jump"] = jump_json(facts.jump);
   json["foot_slips"] = m.foot_slips;
   json["terrain"] = {{"max_step_m", facts.terrain.max_step_m},
                      {"rms_m", facts.terrain.rms_m},

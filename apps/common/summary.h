@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/common/config_root.h"
+#include "apps/common/jump_figures.h"
 #include "apps/common/perceived_map.h"
 #include "apps/common/referee.h"
 #include "apps/common/run_measures.h"
@@ -24,6 +25,7 @@ struct RunFacts {
   double sim_time_s = 0;
   double wall_time_s = 0;
   RunMeasures measures;
+  JumpFigures jump;
   sim::TerrainFigures terrain;
   MapError map;
   std::uint64_t static_bytes = 0;

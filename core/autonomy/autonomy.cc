@@ -54,6 +54,11 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   recovery_.reset(config.control.recovery, config.control.stand_up.folded_rad);
   stand_up_.reset(config.control.stand_up, model, config.control.body.height_m);
   locomotion_.reset(config.control, model);
+  for (const motions::Motion& motion : config_.motions) {
+    if (check_motion(motion, model).fault != motions::MotionFault::kNone) return Status::kInvalid;
+  }
+  jump_pilot_.reset(config.jump_pilot, config.jump, model, config.control.body.height_m,
+                    config_.motions);
   mpc_.reset(config.control.mpc);
   outputs_ = TickOutputs{};
   commands_ = actuation::JointCommands{};
@@ -78,6 +83,7 @@ void Autonomy::run_control() {
   facts.recovery_failed = recovery_.failed();
   facts.stand_up_done = stand_up_.done();
   facts.all_in_stance = locomotion_.all_in_stance();
+  facts.jump_refused = jump_pilot_.given_up();
   facts.fault = find_fault();
   mission_.update(state, facts, tick_s_);
   act(state);
@@ -94,7 +100,7 @@ void Autonomy::receive() {
   const bool recovering = mission_.phase() == MissionPhase::kRecover;
   const bool still = mission_.phase() == MissionPhase::kEnableDrives;
   imu_refused_ += estimator_.update(inputs_->stamp, {inputs_->imu.data(), inputs_->imu.size()},
-                                    bus_.states(), locomotion_.gait_phases(), still);
+                                    bus_.states(), gait_phases(), still);
   // Folded on the ground no foot bears load: the accelerometer alone would carry the trunk away.
   if (still || recovering) estimator_.place(footing_O_m_);
   if (walking_ready_) {
@@ -133,6 +139,11 @@ StopReason Autonomy::find_fault() {
 
 const mapping::MapWindow* Autonomy::window() const {
   return config_.mapping.enabled ? &map_.window() : nullptr;
+}
+
+// What the contact estimator needs to know of the plan.
+std::array<estimation::GaitPhase, robot::kLegs> Autonomy::gait_phases() const {
+  return jump_pilot_.jumps() ? jump_pilot_.jump().gait_phases() : locomotion_.gait_phases();
 }
 
 // It does not lie on its belly with folded legs: StandUp alone would not do.
@@ -180,6 +191,7 @@ void Autonomy::note_footing(const estimation::RobotState& state) {
 // heading that of the gyro, and the map waits until the robot stands.
 void Autonomy::recover(const estimation::RobotState& state) {
   if (mission_.phase_changed()) {
+    jump_pilot_.abandon();
     if (walking_ready_) recovery_.begin();
     recovery_.start();
     walking_ready_ = false;
@@ -229,7 +241,7 @@ void Autonomy::act(const estimation::RobotState& state) {
     case MissionPhase::kWalk:
     case MissionPhase::kArrived:
       if (!walking_ready_) begin_walking(state);
-      commands_ = locomotion_.update(state, window(), walk_command(state), mpc_.plan(), tick_s_);
+      walk(state);
       break;
     case MissionPhase::kStopped: commands_ = bus_.damping_commands(); break;
   }
@@ -258,9 +270,25 @@ control::VelocityCommand Autonomy::avoiding(const estimation::RobotState& state)
   return command;
 }
 
+// Locomotion, unless the pilot jumps.
+void Autonomy::walk(const estimation::RobotState& state) {
+  const bool walks = mission_.phase() == MissionPhase::kWalk;
+  if (config_.mission.jump && (walks || jump_pilot_.jumps())) {
+    jump_pilot_.update(state, window(), footing_O_m_[2], locomotion_.all_in_stance(), tick_s_);
+  }
+  if (jump_pilot_.jumps()) {
+    commands_ = jump_pilot_.joints();
+    return;
+  }
+  if (jump_pilot_.ended()) locomotion_.start(state);
+  commands_ = locomotion_.update(state, window(), walk_command(state), mpc_.plan(), tick_s_);
+}
+
+// The pilot's command, where it steers, comes before the mission's.
 control::WalkCommand Autonomy::walk_command(const estimation::RobotState& state) {
-  velocity_ = avoiding(state);
-  return {velocity_, mission_.gait(),
+  const bool pilot = jump_pilot_.steers() && mission_.phase() == MissionPhase::kWalk;
+  velocity_ = pilot ? jump_pilot_.command() : avoiding(state);
+  return {velocity_, pilot ? jump_pilot_.gait(mission_.gait()) : mission_.gait(),
           config_.mission.unseen_ground ? control::UnseenGround::kAllowed
                                         : control::UnseenGround::kRefused};
 }
@@ -299,6 +327,7 @@ void Autonomy::report(const estimation::RobotState& state) {
     joint.torque_command_Nm = commands_[i].torque_Nm;
   }
   report_legs(state);
+  report_jump();
   telemetry.depth_frames_mapped = map_.counters().frames_integrated;
   telemetry.map_digest = map_.window_digest();
   const estimation::DriftEstimator& drift = estimator_.drift();
@@ -326,10 +355,11 @@ void Autonomy::report_obstacles(const estimation::RobotState& state) {
 }
 
 void Autonomy::report_legs(const estimation::RobotState& state) {
+  const std::array<estimation::GaitPhase, robot::kLegs> phases = gait_phases();
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     const control::LegStatus& status = locomotion_.legs()[leg];
     LegTelemetry& telemetry = outputs_.telemetry.legs[leg];
-    telemetry.stance_planned = status.mode != control::LegMode::kSwing;
+    telemetry.stance_planned = phases[leg].stance_planned;
     telemetry.contact = state.feet[leg].in_contact;
     telemetry.foot_O_m = to_array(state.feet[leg].p_O_m);
     telemetry.force_O_N = to_array(status.force_O_N);
@@ -339,8 +369,19 @@ void Autonomy::report_legs(const estimation::RobotState& state) {
   }
 }
 
+void Autonomy::report_jump() {
+  JumpTelemetry& telemetry = outputs_.telemetry.jump;
+  telemetry.pilot = jump_pilot_.stage();
+  telemetry.stage = jump_pilot_.jump().stage();
+  telemetry.counters = jump_pilot_.counters();
+  telemetry.edge_m = jump_pilot_.distance_m();
+  telemetry.heading_rad = jump_pilot_.heading_error_rad();
+  telemetry.rise_m = jump_pilot_.rise_m();
+  telemetry.gap_m = jump_pilot_.ledge().gap_m;
+}
+
 bool Autonomy::begin_mpc(const TickInputs& inputs) {
-  if (!walking_ready_ || !locomotion_acts()) return false;
+  if (!walking_ready_ || !locomotion_acts() || jump_pilot_.jumps()) return false;
   locomotion_.plan(estimator_.state(), mpc_.problem());
   mpc_.release(inputs.stamp);
   return true;

@@ -8,6 +8,7 @@
 
 #include "core/actuation/joint_bus.h"
 #include "core/autonomy/config.h"
+#include "core/autonomy/jump_pilot.h"
 #include "core/autonomy/map_task.h"
 #include "core/autonomy/mission.h"
 #include "core/autonomy/mpc_task.h"
@@ -59,6 +60,8 @@ class Autonomy {
   bool locomotion_acts() const;
   control::WalkCommand walk_command(const estimation::RobotState& state);
   control::VelocityCommand avoiding(const estimation::RobotState& state);
+  void walk(const estimation::RobotState& state);
+  std::array<estimation::GaitPhase, robot::kLegs> gait_phases() const;
   void begin_walking(const estimation::RobotState& state);
   void recover(const estimation::RobotState& state);
   void start_stand_up();
@@ -71,6 +74,7 @@ class Autonomy {
   void report(const estimation::RobotState& state);
   void report_obstacles(const estimation::RobotState& state);
   void report_legs(const estimation::RobotState& state);
+  void report_jump();
 
   robot::RobotModel model_;
   AutonomyConfig config_;
@@ -85,6 +89,7 @@ class Autonomy {
   control::StandUp stand_up_;
   control::Recovery recovery_;
   control::Locomotion locomotion_;
+  JumpPilot jump_pilot_;
   MpcTask mpc_;
   obstacles::Avoidance avoidance_;
   control::VelocityCommand velocity_;  // what locomotion was told last

@@ -2,11 +2,14 @@
 #pragma once
 
 #include "core/actuation/joint_bus.h"
+#include "core/autonomy/jump_pilot_config.h"
 #include "core/base/fixed_vector.h"
 #include "core/base/parameters.h"
 #include "core/control/config.h"
 #include "core/estimation/config.h"
 #include "core/mapping/mapping_config.h"
+#include "core/motions/jump_config.h"
+#include "core/motions/motion.h"
 #include "core/obstacles/config.h"
 
 namespace surefoot::autonomy {
@@ -93,6 +96,7 @@ struct MissionConfig {
   double stand_s = 0;          // mission stand: how long
   double timeout_s = 0;        // of the whole mission
   bool unseen_ground = false;  // the operator vouches for ground that the robot has not seen
+  bool jump = false;           // over what cannot be walked over, where a motion reaches
   bool recover = false;        // after a fall, and from any pose at the start: get up and go on
   bool avoid = false;          // goes round what it cannot step over (core/obstacles)
   double live_lock_s = 0;  // without getting nearer to the goal for so long it gives up; 0: never
@@ -115,6 +119,7 @@ struct MissionConfig {
     visit.real("stand_s", self.stand_s, {0.0, 3600.0}, "mission stand: how long");
     visit.real("timeout_s", self.timeout_s, {1.0, 36000.0}, "of the whole mission");
     visit.boolean("unseen_ground", self.unseen_ground, "the operator vouches for unseen ground");
+    visit.boolean("jump", self.jump, "over what cannot be walked over");
     visit.boolean("recover", self.recover, "get up after a fall and go on");
     visit.boolean("avoid", self.avoid, "go round what it cannot step over");
     visit.real("live_lock_s", self.live_lock_s, {0.0, 3600.0},
@@ -132,6 +137,9 @@ struct AutonomyConfig {
   obstacles::ObstacleConfig obstacles;
   SafetyConfig safety;
   StartPadConfig start_pad;
+  motions::JumpConfig jump;
+  JumpPilotConfig jump_pilot;
+  motions::MotionLibrary motions;  // none where the mission does not jump
   MissionConfig mission;
 
   template <class Self, class Visitor>
@@ -143,6 +151,9 @@ struct AutonomyConfig {
     visit.group("obstacles", self.obstacles);
     visit.group("safety", self.safety);
     visit.group("start_pad", self.start_pad);
+    visit.group("jump", self.jump);
+    visit.group("jump_pilot", self.jump_pilot);
+    visit.list("motions", self.motions);
     visit.group("mission", self.mission);
   }
 };

@@ -120,6 +120,7 @@ void Mission::update(const estimation::RobotState& state, const MissionFacts& fa
       return enter(MissionPhase::kWalk);
     }
     case MissionPhase::kWalk:
+      if (facts.jump_refused) return stop(StopReason::kNoJump);
       if (config_.kind == MissionConfig::Kind::kScript) return follow_script(state, step_s);
       return cross(state, step_s);
     case MissionPhase::kArrived:

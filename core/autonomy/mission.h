@@ -18,6 +18,7 @@ struct MissionFacts {
   bool recovery_failed = false;
   bool stand_up_done = false;
   bool all_in_stance = false;
+  bool jump_refused = false;  // an edge ahead, and the pilot has given up
   StopReason fault = StopReason::kNone;
 };
 

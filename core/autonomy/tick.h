@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/autonomy/jump_pilot.h"
 #include "core/base/fields.h"
 #include "core/base/fixed_vector.h"
 #include "core/base/time.h"
@@ -77,6 +78,7 @@ enum class StopReason : std::uint8_t {
   kDriveFault,      // a drive reported an error code
   kRecoveryFailed,  // on the ground, and no roll has turned the robot over
   kLiveLock,        // walks, and gets no nearer to the goal
+  kNoJump,          // an edge ahead that no jump takes, or not from here; telemetry says why
 };
 
 // One leg, in the odometry frame O (docs/frames_and_units.md).
@@ -148,6 +150,28 @@ struct ObstacleTelemetry {
   }
 };
 
+// The jump pilot: what it does, and the edge it looks at.
+struct JumpTelemetry {
+  PilotStage pilot = PilotStage::kWatch;
+  motions::JumpStage stage = motions::JumpStage::kIdle;
+  JumpCounters counters;
+  double edge_m = 0;  // trunk's origin to the edge; 0 without one
+  double heading_rad = 0;
+  double rise_m = 0;
+  double gap_m = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("pilot", self.pilot);
+    visit("stage", self.stage);
+    visit("counters", self.counters);
+    visit("edge_m", self.edge_m);
+    visit("heading_rad", self.heading_rad);
+    visit("rise_m", self.rise_m);
+    visit("gap_m", self.gap_m);
+  }
+};
+
 // The visible state of the autonomy. Enough to draw a run; hashed and compared by replay.
 struct Telemetry {
   MissionPhase phase = MissionPhase::kEnableDrives;
@@ -161,6 +185,7 @@ struct Telemetry {
   std::array<JointTelemetry, robot::kJoints> joints;
   TrackingTelemetry tracking;
   ObstacleTelemetry obstacles;
+  JumpTelemetry jump;
   std::uint64_t depth_frames_mapped = 0;
   std::uint64_t map_digest = 0;  // hash of the published map window
   std::uint64_t replies_missed = 0;
@@ -179,6 +204,7 @@ struct Telemetry {
     visit("joints", self.joints);
     visit("tracking", self.tracking);
     visit("obstacles", self.obstacles);
+    visit("jump", self.jump);
     visit("depth_frames_mapped", self.depth_frames_mapped);
     visit("map_digest", self.map_digest);
     visit("replies_missed", self.replies_missed);

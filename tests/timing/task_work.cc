@@ -21,8 +21,8 @@ extern "C" [[gnu::noinline]] void measured_region(surefoot::timing::WorkCase* wo
 namespace surefoot::timing {
 namespace {
 
-constexpr std::array kTables{kControlCases,  kModuleCases,  kMpcCases,
-                             kDynamicsCases, kMappingCases, kExecutiveCases};
+constexpr std::array kTables{kControlCases, kModuleCases,  kMpcCases,      kDynamicsCases,
+                             kJumpCases,    kMappingCases, kExecutiveCases};
 
 int list() {
   for (const WorkEntry* table : kTables) {

@@ -36,5 +36,6 @@ extern const WorkEntry kMpcCases[];
 extern const WorkEntry kMappingCases[];
 extern const WorkEntry kExecutiveCases[];
 extern const WorkEntry kDynamicsCases[];
+extern const WorkEntry kJumpCases[];
 
 }  // namespace surefoot::timing

@@ -25,6 +25,8 @@ constexpr Workload kWorkloads[] = {
     {"convex_mpc", surefoot::tests::hash_convex_mpc},
     {"whole_body", surefoot::tests::hash_whole_body},
     {"recovery", surefoot::tests::hash_recovery},
+    {"jump", surefoot::tests::hash_jump},
+    {"ledge", surefoot::tests::hash_ledge},
 };
 
 }  // namespace
