@@ -31,6 +31,10 @@ Drawing ground_figure(const HeightGrid& heights, const ClassGrid& classes);
 Drawing motion_figure(const RunLog& log);
 // Joint torques against their limits, one row per joint of a leg.
 Drawing torque_figure(const RunLog& log, const robot::RobotModel& robot);
+// Whether the log holds a jump, and its last one: poses from the side, and torques under them.
+// `ground` may be empty.
+bool has_jump(const RunLog& log);
+Drawing jump_figure(const RunLog& log, const robot::RobotModel& robot, const TrueGround& ground);
 // Which leg stands and which swings: planned, and felt.
 Drawing gait_figure(const RunLog& log);
 // Median, 99th percentile and maximum of every task against its budget.

@@ -42,7 +42,7 @@ std::vector<NamedDrawing> run_pictures(const RunLog& log, const Config& config,
                                    terrain.O_in_W, raster);
   }
   if (ground) terrain.truth = true_grid(ground, raster);
-  return {
+  std::vector<NamedDrawing> pictures{
       {"terrain",
        "Classes are those of the map at the end. Red: where a foot was sent because the nominal "
        "place (black ring) could not bear it. Grey: never seen.",
@@ -53,6 +53,14 @@ std::vector<NamedDrawing> run_pictures(const RunLog& log, const Config& config,
       {"gait", "Four seconds from the middle of the walk.", gait_figure(log)},
       {"timing", "Execution times on this computer; they are not part of the run's hash.",
        timing_figure(tasks)}};
+  if (has_jump(log)) {
+    pictures.insert(pictures.begin() + 1,
+                    {"jump",
+                     "The last jump. Right legs in colour, left ones grey. Uprights: the moments "
+                     "above. Torques measured by the drives; dashed: limit of the actuator.",
+                     jump_figure(log, config.robot, ground)});
+  }
+  return pictures;
 }
 
 }  // namespace surefoot::apps
