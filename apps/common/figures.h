@@ -10,6 +10,7 @@
 #include "apps/common/run_log.h"
 #include "core/robot/robot_model.h"
 #include "core/runtime/statistics.h"
+#include "sim_hal/scenario.h"
 
 namespace surefoot::apps {
 
@@ -19,6 +20,7 @@ struct TerrainFigure {
   ClassGrid classes;     // same raster
   Alignment O_in_W;
   double goal_x_m = 0;
+  sim::ObstacleConfig obstacle;  // without places there is none
   double lane_half_width_m = 0;  // 0: no lane
 };
 

@@ -229,6 +229,47 @@ void draw_true_traces(const RunLog& log, Axes& axes) {
   axes.legend(legend);
 }
 
+std::vector<Point> outline(const std::array<double, 3>& place, const sim::ObstacleConfig& size) {
+  constexpr std::array<std::array<double, 2>, 5> kCorners{
+      {{0.5, 0.5}, {-0.5, 0.5}, {-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}}};
+  std::vector<Point> points;
+  for (const auto& corner : kCorners) {
+    const double u = corner[0] * size.length_m;
+    const double v = corner[1] * size.width_m;
+    points.push_back({place[0] + u * std::cos(place[2]) - v * std::sin(place[2]),
+                      place[1] + u * std::sin(place[2]) + v * std::cos(place[2])});
+  }
+  return points;
+}
+
+// Everywhere it stood, numbered.
+void draw_obstacle(Drawing& drawing, const RunLog& log, const sim::ObstacleConfig& size,
+                   Axes& axes) {
+  if (size.places.empty()) return;
+  std::array<double, 3> last{};
+  int number = 0;
+  for (const RunSample& sample : log.samples()) {
+    const std::array<double, 3>& place = sample.truth.obstacle;
+    if (number > 0 && place == last) continue;
+    last = place;
+    ++number;
+    axes.path(outline(place, size), {palette::kRed, 2, false});
+    if (!axes.contains(place[0], place[1])) continue;
+    drawing.text(axes.at(place[0], place[1]), fmt::format("{}", number),
+                 {14, palette::kRed, Anchor::kMiddle, true, false});
+  }
+}
+
+// Discs that repelled the robot at the end.
+void draw_fields(const RunLog& log, const Alignment& O_in_W, Drawing& drawing, const Axes& axes) {
+  if (log.samples().empty()) return;
+  for (const auto& centre : log.samples().back().telemetry.obstacles.fields_O_m) {
+    const auto place = O_in_W.to_world({centre[0], centre[1], 0});
+    if (!axes.contains(place[0], place[1])) continue;
+    drawing.ring(axes.at(place[0], place[1]), 5, {palette::kPurple, 2, false});
+  }
+}
+
 struct FootholdCounts {
   int nominal = 0;
   int moved = 0;
@@ -299,9 +340,12 @@ Drawing terrain_figure(const RunLog& log, const TerrainFigure& figure) {
         panels.heights(row++, figure.truth, heights, height_colour,
                        "True ground, with the true traces of body and feet", "height [m]", false);
     draw_true_traces(log, axes);
+    draw_obstacle(drawing, log, figure.obstacle, axes);
   }
-  panels.heights(row++, figure.perceived, heights, height_colour, "Perceived map", "height [m]",
-                 false);
+  Axes map = panels.heights(row++, figure.perceived, heights, height_colour,
+                            "Perceived map, with the fields of obstacles (rings) at the end",
+                            "height [m]", false);
+  draw_fields(log, figure.O_in_W, drawing, map);
   Axes axes = panels.classes(row++, figure.classes, "Classes and footholds", !with_truth);
   axes.legend(foothold_legend(draw_footholds(drawing, log.touchdowns(), figure.O_in_W, axes)));
   if (with_truth) {

@@ -152,7 +152,7 @@ class Run {
     facts_.falls = referee.falls();
     facts_.sim_time_s = static_cast<double>(executive.ticks()) * autonomy::kTickPeriod.seconds();
     facts_.wall_time_s = loop.wall_time_s;
-    facts_.measures = measure(*log_, goal_x_m(config_));
+    facts_.measures = measure(*log_, goal_x_m(config_), course_m(config_));
     facts_.measures.recovery = recovery_figures();
     facts_.jump = measure_jumps(*log_, torque_limits_Nm());
     if (facts_.verdict.outcome == Outcome::kNoPath && facts_.jump.refusals > 0) {

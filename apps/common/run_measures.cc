@@ -64,14 +64,20 @@ std::uint64_t count_slips(const RunLog& log, std::size_t begin, std::size_t end)
 
 std::uint64_t count_touches(const RunLog& log, std::size_t begin, std::size_t end) {
   std::uint64_t touches = 0;
-  // Index 0 the trunk, then the legs.
-  std::array<double, robot::kLegs + 1> last_s;
+  std::uint64_t obstacle_steps = 0;
+  // Index 0 the trunk, then the legs, at last any part on the obstacle.
+  std::array<double, robot::kLegs + 2> last_s;
   last_s.fill(-1e9);
   for (std::size_t i = begin; i < end; ++i) {
     const RunSample& sample = log.samples()[i];
     for (std::size_t part = 0; part < last_s.size(); ++part) {
-      const bool touching =
-          part == 0 ? sample.truth.trunk_contact : sample.truth.leg_contact[part - 1];
+      bool touching = sample.truth.trunk_contact;
+      if (part > robot::kLegs) {
+        touching = sample.truth.obstacle_steps > obstacle_steps;
+        obstacle_steps = sample.truth.obstacle_steps;
+      } else if (part > 0) {
+        touching = sample.truth.leg_contact[part - 1];
+      }
       if (!touching) continue;
       const double now = sample.stamp.seconds();
       if (now - last_s[part] > kTouchApart_s) ++touches;
@@ -190,7 +196,7 @@ RecoveryFigures measure_recovery(const RunLog& log, double standing_height_m,
   return figures;
 }
 
-RunMeasures measure(const RunLog& log, double goal_x_m) {
+RunMeasures measure(const RunLog& log, double goal_x_m, double course_m) {
   RunMeasures measures;
   const bool has_goal = goal_x_m >= 0;
   const std::size_t begin = log.walk_begin();
@@ -210,6 +216,10 @@ RunMeasures measure(const RunLog& log, double goal_x_m) {
     measures.start_to_goal_m = plane_distance(start, goal);
     const double made = measures.start_to_goal_m - plane_distance(last, goal);
     if (measures.walk_s > 0) measures.mean_speed_m_s = std::max(0.0, made / measures.walk_s);
+  }
+  if (course_m > 0) {
+    measures.start_to_goal_m = course_m;
+    measures.mean_speed_m_s = measures.walk_s > 0 ? measures.path_length_m / measures.walk_s : 0.0;
   }
   measures.sustained = sustained_speeds(log, begin, end);
   if (!log.has_truth()) return measures;

@@ -45,8 +45,9 @@ struct RunMeasures {
   RecoveryFigures recovery;      // zero without truth
 };
 
-// goal_x_m: in W, on y = 0; negative: none. Without truth the estimate stands in for it.
-RunMeasures measure(const RunLog& log, double goal_x_m);
+// goal_x_m: in W, on y = 0; negative: none. Without truth the estimate stands in for it. course_m:
+// length of the lines of a mission with waypoints, whose goal may lie where it started; 0: none.
+RunMeasures measure(const RunLog& log, double goal_x_m, double course_m = 0);
 
 // standing_height_m: of the trunk over the feet's centres where the robot stands.
 RecoveryFigures measure_recovery(const RunLog& log, double standing_height_m,

@@ -1,6 +1,7 @@
 #include "apps/common/run_pictures.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/common/figures.h"
 #include "sim_hal/world/world_spec.h"
@@ -25,15 +26,30 @@ double goal_x_m(const Config& config) {
   return mission.waypoints.empty() ? mission.goal_x_m : mission.waypoints.back().x_m;
 }
 
+double course_m(const Config& config) {
+  double length = 0;
+  autonomy::Waypoint from;
+  for (const autonomy::Waypoint& to : config.autonomy.mission.waypoints) {
+    length += std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
+    from = to;
+  }
+  return length;
+}
+
 std::vector<NamedDrawing> run_pictures(const RunLog& log, const Config& config,
                                        const mapping::Mapper& mapper, const TrueGround& ground,
                                        const std::vector<runtime::TaskReport>& tasks) {
-  const double length = std::clamp(goal_x_m(config), 1.0, kLongest_m);
+  double length = goal_x_m(config);
+  for (const autonomy::Waypoint& place : config.autonomy.mission.waypoints) {
+    length = std::max(length, place.x_m);
+  }
+  length = std::clamp(length, 1.0, kLongest_m);
   const HeightGrid raster(-kMargin_m, -kHalfWidth_m, length + 2 * kMargin_m, 2 * kHalfWidth_m,
                           kRaster_m);
   TerrainFigure terrain;
   terrain.O_in_W = align_at_start(log);
   terrain.goal_x_m = goal_x_m(config);
+  terrain.obstacle = config.sim.scenario.obstacle;
   terrain.lane_half_width_m = lane_half_width_m(config);
   terrain.perceived = perceived_grid(mapper, terrain.O_in_W, raster);
   terrain.classes = ClassGrid(raster);

@@ -16,6 +16,8 @@ namespace surefoot::apps {
 double lane_half_width_m(const Config& config);
 // The goal in W on y = 0; negative: the mission has none.
 double goal_x_m(const Config& config);
+// Length of the lines between the waypoints; 0: the mission has none.
+double course_m(const Config& config);
 
 // `ground` may be empty: then there is no true map.
 std::vector<NamedDrawing> run_pictures(const RunLog& log, const Config& config,

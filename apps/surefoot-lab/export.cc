@@ -140,7 +140,7 @@ int to_html(const std::string& record, const fs::path& folder, Stack& stack) {
       last.phase == autonomy::MissionPhase::kArrived ? Outcome::kGoal : Outcome::kAborted,
       "from the record, without ground truth"};
   facts.config_hash = config_hash(config);
-  facts.measures = measure(log, goal_x_m(config));
+  facts.measures = measure(log, goal_x_m(config), course_m(config));
   facts.ticks = executive.ticks();
   facts.hash = executive.hash();
   facts.sim_time_s = static_cast<double>(facts.ticks) * autonomy::kTickPeriod.seconds();

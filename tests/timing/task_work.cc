@@ -22,7 +22,7 @@ namespace surefoot::timing {
 namespace {
 
 constexpr std::array kTables{kControlCases, kModuleCases,  kMpcCases,      kDynamicsCases,
-                             kJumpCases,    kMappingCases, kExecutiveCases};
+                             kJumpCases,    kMappingCases, kObstacleCases, kExecutiveCases};
 
 int list() {
   for (const WorkEntry* table : kTables) {

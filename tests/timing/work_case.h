@@ -37,5 +37,6 @@ extern const WorkEntry kMappingCases[];
 extern const WorkEntry kExecutiveCases[];
 extern const WorkEntry kDynamicsCases[];
 extern const WorkEntry kJumpCases[];
+extern const WorkEntry kObstacleCases[];
 
 }  // namespace surefoot::timing

@@ -27,6 +27,7 @@ constexpr Workload kWorkloads[] = {
     {"recovery", surefoot::tests::hash_recovery},
     {"jump", surefoot::tests::hash_jump},
     {"ledge", surefoot::tests::hash_ledge},
+    {"obstacles", surefoot::tests::hash_obstacles},
 };
 
 }  // namespace

@@ -37,5 +37,6 @@ void hash_whole_body(Fnv64& hash);
 void hash_recovery(Fnv64& hash);
 void hash_jump(Fnv64& hash);
 void hash_ledge(Fnv64& hash);
+void hash_obstacles(Fnv64& hash);
 
 }  // namespace surefoot::tests

@@ -221,6 +221,37 @@ TEST(RunMeasures, RecoveryIsTimedByTheTruth) {
   EXPECT_EQ(twice.stood, 1);
 }
 
+TEST(Referee, ATouchOfTheObstacleEndsTheRunAsACollision) {
+  Referee referee({});
+  sim::Truth truth = body_at(1, 0.5);
+  referee.observe(at(1), in_phase(MissionPhase::kWalk), truth);
+  EXPECT_FALSE(referee.over());
+  truth.obstacle_steps = 1;
+  referee.observe(at(2), in_phase(MissionPhase::kWalk), truth);
+  EXPECT_TRUE(referee.over());
+  EXPECT_EQ(referee.verdict().outcome, Outcome::kCollision);
+  EXPECT_EQ(referee.verdict().reason, "touched the obstacle at x = 1.00 m, y = 0.50 m");
+}
+
+TEST(Referee, AMissionThatGivesUpIsALiveLock) {
+  EXPECT_EQ(judge(in_phase(MissionPhase::kStopped, StopReason::kLiveLock), body_at(1)).outcome,
+            Outcome::kLiveLock);
+}
+
+// There and back: the goal is where it started.
+TEST(RunMeasures, ACourseOfWaypointsIsMeasuredAlongTheWay) {
+  RunLog log(1000, true);
+  for (int i = 0; i <= 400; ++i) {
+    sim::Truth truth = body_at(i <= 200 ? 0.01 * i : 4.0 - 0.01 * i);
+    truth.obstacle_steps = i < 100 ? 0 : i < 110 ? static_cast<std::uint64_t>(i - 99) : 10;
+    log.add(at(0.02 * i), in_phase(MissionPhase::kWalk), &truth);
+  }
+  const RunMeasures m = measure(log, 0.0, 4.0);
+  EXPECT_EQ(m.start_to_goal_m, 4.0);
+  EXPECT_NEAR(m.mean_speed_m_s, 0.5, 0.01);
+  EXPECT_EQ(m.collisions, 1U);
+}
+
 TEST(RunMeasures, ARunThatNeverWalked) {
   RunLog log(10, true);
   const sim::Truth truth = body_at(0);

@@ -107,7 +107,8 @@ class Rig {
  public:
   static constexpr TimeNs kTick = milliseconds(2);
 
-  explicit Rig(const WorldSpec& world = {}, const SimulatorConfig& config = {},
+  // Not `config = {}`: g++ 12 crashes on that.
+  explicit Rig(const WorldSpec& world = {}, const SimulatorConfig& config = SimulatorConfig(),
                std::uint64_t seed = 1, const robot::RobotModel& robot = mini_cheetah())
       : model(robot),
         simulator(std::make_unique<Simulator>(robot, world, config, seed)),
