@@ -82,8 +82,12 @@ struct TrackingConfig {
   double jump_rad = 0;              // camera's
   double odometry_drift_m_s = 0;    // and grows by this over a gap: what the estimate without
   double odometry_drift_rad_s = 0;  // the camera may drift
-  double position_gain_1_s = 0;     // share of the error that is given back
-  double max_horizontal_m_s = 0;    // at most
+  double own_horizontal_m = 0;      // an error up to this may be the camera's own
+  double own_vertical_m = 0;
+  double own_yaw_rad = 0;
+  double own_error_share = 0;     // of the gains that acts on it nevertheless
+  double position_gain_1_s = 0;   // share of the error that is given back
+  double max_horizontal_m_s = 0;  // at most
   double max_vertical_m_s = 0;
   double yaw_gain_1_s = 0;
   double max_yaw_rate_rad_s = 0;
@@ -99,6 +103,12 @@ struct TrackingConfig {
     visit.real("odometry_drift_m_s", self.odometry_drift_m_s, {0.0, 1.0},
                "the estimate's drift without the camera");
     visit.real("odometry_drift_rad_s", self.odometry_drift_rad_s, {0.0, 1.0}, "the same of yaw");
+    visit.real("own_horizontal_m", self.own_horizontal_m, {0.0, 1.0},
+               "an error up to this may be the camera's own");
+    visit.real("own_vertical_m", self.own_vertical_m, {0.0, 1.0}, "the same of height");
+    visit.real("own_yaw_rad", self.own_yaw_rad, {0.0, 1.0}, "the same of yaw");
+    visit.real("own_error_share", self.own_error_share, {0.0, 1.0},
+               "of the gains that acts on it nevertheless");
     visit.real("position_gain_1_s", self.position_gain_1_s, {0.0, 10.0},
                "share of the position error given back");
     visit.real("max_horizontal_m_s", self.max_horizontal_m_s, {0.0, 1.0}, "at most");

@@ -106,14 +106,25 @@ void DriftEstimator::average(const Observation& now) {
   rotation_error_O_rad_ = geometry::to_rotation_vector(R_OS_ * now.R_SB * now.R_OB.transpose());
 }
 
+// Of the gain on an error: a leaky dead zone.
+double DriftEstimator::weight(double error, double own) const {
+  const double size = error < 0 ? -error : error;
+  const double beyond = size > own ? (size - own) / size : 0.0;
+  return config_.own_error_share + (1.0 - config_.own_error_share) * beyond;
+}
+
 DriftCorrection DriftEstimator::correction(double step_s) const {
+  const double off_m = math::sqrt(error_O_m_.head<2>().squaredNorm());
   Vector3 rate_m_s = error_O_m_ * config_.position_gain_1_s;
+  rate_m_s.head<2>() *= weight(off_m, config_.own_horizontal_m);
+  rate_m_s[2] *= weight(error_O_m_[2], config_.own_vertical_m);
   const double horizontal_m_s = math::sqrt(rate_m_s.head<2>().squaredNorm());
   if (horizontal_m_s > config_.max_horizontal_m_s) {
     rate_m_s.head<2>() *= config_.max_horizontal_m_s / horizontal_m_s;
   }
   rate_m_s[2] = math::clamp(rate_m_s[2], -config_.max_vertical_m_s, config_.max_vertical_m_s);
-  const double wanted_rad_s = config_.yaw_gain_1_s * yaw_error_rad();
+  const double yaw_rad = yaw_error_rad() * weight(yaw_error_rad(), config_.own_yaw_rad);
+  const double wanted_rad_s = config_.yaw_gain_1_s * yaw_rad;
   DriftCorrection out;
   out.shift_O_m = rate_m_s * step_s;
   out.yaw_rad =
@@ -121,7 +132,7 @@ DriftCorrection DriftEstimator::correction(double step_s) const {
   // An error beyond the bound is an outage's: it says nothing about the bias of now.
   const bool bounded =
       wanted_rad_s > config_.max_yaw_rate_rad_s || wanted_rad_s < -config_.max_yaw_rate_rad_s;
-  if (!bounded) out.yaw_bias_rad_s = -config_.yaw_bias_gain_1_s2 * yaw_error_rad() * step_s;
+  if (!bounded) out.yaw_bias_rad_s = -config_.yaw_bias_gain_1_s2 * yaw_rad * step_s;
   return out;
 }
 

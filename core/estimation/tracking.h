@@ -6,6 +6,10 @@
 // of the drift they remove, and the map in it does not tear (docs/decisions/007). The way is summed
 // up increment by increment, so that neither a turn of S nor a jump is multiplied by the distance.
 //
+// The camera drifts too, over a short way more than legs that do not slip. An error that may be its
+// own is all but left to it (own_error_share of the gains remains, for drift that lasts); what is
+// more must be the legs'.
+//
 // Increments that differ from the estimator's by more than a step of the body and the odometry's
 // own drift can explain are the camera's: relocalisation, restart, return from an outage. They move
 // S and leave O alone. Gravity is the estimator's: the tilt of S follows it slowly.
@@ -87,6 +91,7 @@ class DriftEstimator {
   void anchor(const Observation& now);
   void compare(const Observation& now, double span_s);
   void average(const Observation& now);
+  double weight(double error, double own) const;
   DriftCorrection correction(double step_s) const;
 
   TrackingConfig config_;
@@ -94,6 +99,7 @@ class DriftEstimator {
   Vector3 p_BT_m_ = Vector3::Zero();
   bool anchored_ = false;
   int averaged_ = 0;  // samples since S was found or moved
+  TimeNs found_;      // stamp of the first sample since O was placed
   TimeNs stamp_;
   Matrix3 R_OS_ = Matrix3::Identity();
   Vector3 p_OB_camera_m_ = Vector3::Zero();  // the camera's way, summed up in O
