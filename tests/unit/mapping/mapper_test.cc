@@ -1,5 +1,6 @@
 #include "core/mapping/mapper.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -464,6 +465,32 @@ TEST_F(Standing, LargeImagesAreThinnedToTheBound) {
   EXPECT_LE(report.pixels, kMaxPixels);
   EXPECT_GT(report.pixels, kMaxPixels / 2);
   EXPECT_EQ(cell_at(0.7, 0).state, CellState::kMeasured);
+}
+
+// A robot that fell: what it knew around the place is gone, what lies beyond stays, and wrong orders
+// change nothing.
+TEST_F(Standing, ForgetsASquareAndNothingBeyondIt) {
+  AssumedPad pad;
+  pad.half_length_m = 0.9;
+  pad.half_width_m = 0.6;
+  ASSERT_EQ(mapper_->assume(pad), Status::kOk);
+  EXPECT_EQ(mapper_->forget(NAN, 0.0, 0.3), Status::kInvalid);
+  EXPECT_EQ(mapper_->forget(0.0, 0.0, -0.1), Status::kInvalid);
+  EXPECT_EQ(mapper_->forget(0.0, 0.0, 5.1), Status::kInvalid);
+  EXPECT_TRUE(cell_at(0.2, 0.0).has_height());
+  ASSERT_EQ(mapper_->forget(0.2, 0.1, 0.3), Status::kOk);
+  for (double x = -0.8; x <= 0.8; x += 0.03) {
+    for (double y = -0.5; y <= 0.5; y += 0.03) {
+      const double off = std::max(std::fabs(x - 0.2), std::fabs(y - 0.1));
+      if (std::fabs(off - 0.3) < 0.02) continue;  // the square's edge within a cell
+      EXPECT_EQ(cell_at(x, y).has_height(), off > 0.3) << x << " " << y;
+    }
+  }
+}
+
+TEST(Mapper, ForgetsNothingBeforeItIsConfigured) {
+  const auto mapper = std::make_unique<Mapper>();
+  EXPECT_EQ(mapper->forget(0.0, 0.0, 0.3), Status::kUnavailable);
 }
 
 }  // namespace
