@@ -117,7 +117,7 @@ struct Simulator::Implementation final : hal::Clock {
         robot(ode.id(), robot_model, configuration.start, step.seconds()),
         contacts(ode.id(), robot, terrain, index, configuration.physics),
         pushes(configuration.scenario.push, seed),
-        obstacle(configuration.scenario.obstacle, seed),
+        obstacle(configuration.scenario.obstacle, terrain.obstacle, seed),
         can(robot_model, configuration.can, configuration.faults, seed),
         imu(robot_model.imu, configuration.imu, configuration.faults, seed),
         camera(robot_model.depth_camera, configuration.depth, configuration.faults, index, seed),

@@ -46,7 +46,9 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   velocity_ = control::VelocityCommand{};
   changed_side_ = false;
   if (config.mission.avoid) {
-    map_.watch_obstacles(config.obstacles, {.jump_only = true, .min_rise_m = limits.max_step_m});
+    const double rise_m = config.mission.blocked_rise_m;
+    map_.watch_obstacles(config.obstacles, {.jump_only = !config.mission.jump,
+                                            .min_rise_m = rise_m > 0 ? rise_m : limits.max_step_m});
   }
   estimator_.reset(config.estimation, model, tick_s_);
   history_.clear();
@@ -273,7 +275,11 @@ control::VelocityCommand Autonomy::avoiding(const estimation::RobotState& state)
 // Locomotion, unless the pilot jumps.
 void Autonomy::walk(const estimation::RobotState& state) {
   const bool walks = mission_.phase() == MissionPhase::kWalk;
-  if (config_.mission.jump && (walks || jump_pilot_.jumps())) {
+  const bool on_detour = walks && avoidance_.side() != 0;
+  // What it goes round it does not jump on.
+  if (on_detour && !jump_pilot_.jumps()) {
+    jump_pilot_.abandon();
+  } else if (config_.mission.jump && (walks || jump_pilot_.jumps())) {
     jump_pilot_.update(state, window(), footing_O_m_[2], locomotion_.all_in_stance(), tick_s_);
   }
   if (jump_pilot_.jumps()) {
@@ -287,7 +293,8 @@ void Autonomy::walk(const estimation::RobotState& state) {
 // The pilot's command, where it steers, comes before the mission's.
 control::WalkCommand Autonomy::walk_command(const estimation::RobotState& state) {
   const bool pilot = jump_pilot_.steers() && mission_.phase() == MissionPhase::kWalk;
-  velocity_ = pilot ? jump_pilot_.command() : avoiding(state);
+  velocity_ = avoiding(state);
+  if (pilot) velocity_ = jump_pilot_.command();
   return {velocity_, pilot ? jump_pilot_.gait(mission_.gait()) : mission_.gait(),
           config_.mission.unseen_ground ? control::UnseenGround::kAllowed
                                         : control::UnseenGround::kRefused};

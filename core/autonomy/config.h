@@ -99,6 +99,7 @@ struct MissionConfig {
   bool jump = false;           // over what cannot be walked over, where a motion reaches
   bool recover = false;        // after a fall, and from any pose at the start: get up and go on
   bool avoid = false;          // goes round what it cannot step over (core/obstacles)
+  double blocked_rise_m = 0;   // avoid: what rises by more; 0: what it cannot step over
   double live_lock_s = 0;  // without getting nearer to the goal for so long it gives up; 0: never
   FixedVector<Waypoint, kMaxWaypoints> waypoints;   // cross: instead of goal_x_m, in this order
   FixedVector<ScriptStep, kMaxScriptSteps> script;  // mission script: one after the other
@@ -122,6 +123,8 @@ struct MissionConfig {
     visit.boolean("jump", self.jump, "over what cannot be walked over");
     visit.boolean("recover", self.recover, "get up after a fall and go on");
     visit.boolean("avoid", self.avoid, "go round what it cannot step over");
+    visit.real("blocked_rise_m", self.blocked_rise_m, {0.0, 2.0},
+               "avoid: what rises by more; 0: what it cannot step over");
     visit.real("live_lock_s", self.live_lock_s, {0.0, 3600.0},
                "not nearer to the goal for so long: give up; 0: never");
     visit.list("waypoints", self.waypoints);

@@ -6,8 +6,8 @@
 
 namespace surefoot::sim {
 
-// The middle of the near edge lies at (kEdgeX_m, 0), whichever way the platform is turned.
-void make_platform(double height_m, Random& random, Terrain& terrain) {
+// The middle of the near edge stays in place, whichever way the platform is turned.
+void make_platform(double height_m, double edge_x_m, Random& random, Terrain& terrain) {
   constexpr double kMinLength_m = 1.6;  // landing, and a few steps
   constexpr double kMaxLength_m = 2.2;
   constexpr double kMinWidth_m = 1.2;
@@ -20,7 +20,7 @@ void make_platform(double height_m, Random& random, Terrain& terrain) {
   const double yaw = random.uniform(-kMaxYaw_rad, kMaxYaw_rad);
   box.cos_yaw = std::cos(yaw);
   box.sin_yaw = std::sin(yaw);
-  box.x_m = kEdgeX_m + box.cos_yaw * box.half_length_m;
+  box.x_m = edge_x_m + box.cos_yaw * box.half_length_m;
   box.y_m = box.sin_yaw * box.half_length_m;
   box.top_m = height_m;
   terrain.boxes.push_back(box);

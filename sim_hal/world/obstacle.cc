@@ -11,7 +11,8 @@ constexpr std::uint64_t kObstacleStream = 7;
 
 }  // namespace
 
-Obstacle::Obstacle(const ObstacleConfig& config, std::uint64_t seed) {
+Obstacle::Obstacle(const ObstacleConfig& config, const std::optional<TerrainBox>& of_world,
+                   std::uint64_t seed) {
   Random random(seed, kObstacleStream);
   for (const ObstaclePlace& place : config.places) {
     TerrainBox& box = boxes_[places_];
@@ -26,6 +27,7 @@ Obstacle::Obstacle(const ObstacleConfig& config, std::uint64_t seed) {
     when_x_m_[places_] = place.when_x_m;
     ++places_;
   }
+  if (places_ == 0 && of_world.has_value()) boxes_[places_++] = *of_world;
   box_ = boxes_[0];
 }
 

@@ -1,9 +1,11 @@
-// The obstacle of a scenario: a box that is put elsewhere while the robot goes on.
+// The obstacle of a scenario, a box that is put elsewhere while the robot goes on; or that of a
+// world, which stays.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "sim_hal/scenario.h"
 #include "sim_hal/world/terrain.h"
@@ -12,7 +14,9 @@ namespace surefoot::sim {
 
 class Obstacle {
  public:
-  Obstacle(const ObstacleConfig& config, std::uint64_t seed);
+  // of_world: stands where the scenario has no places.
+  Obstacle(const ObstacleConfig& config, const std::optional<TerrainBox>& of_world,
+           std::uint64_t seed);
 
   bool exists() const { return places_ > 0; }
   // Where it stands now. exists() only.

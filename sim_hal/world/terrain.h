@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/base/random.h"
@@ -55,6 +56,7 @@ struct HeightGrid {
 
 struct Terrain {
   std::vector<TerrainBox> boxes;
+  std::optional<TerrainBox> obstacle;  // not to be touched (world/obstacle.h)
   HeightGrid grid;
   double friction = 0.6;
   std::uint32_t bridged_cells = 0;
@@ -70,7 +72,9 @@ Terrain make_terrain(const WorldSpec& spec, std::uint64_t seed);
 void make_clutter(double height_m, double cover, Random& random, Terrain& terrain);
 void make_steps(double height_m, Random& random, Terrain& terrain);
 void make_ramps(double slope_rad, Random& random, Terrain& terrain);
-void make_platform(double height_m, Random& random, Terrain& terrain);
+// The middle of the near edge lies at (edge_x_m, 0).
+void make_platform(double height_m, double edge_x_m, Random& random, Terrain& terrain);
+void make_gauntlet(double height_m, double cover, Random& random, Terrain& terrain);
 void make_gap(double length_m, Random& random, Terrain& terrain);
 void make_height_map(const WorldSpec& spec, Terrain& terrain);
 

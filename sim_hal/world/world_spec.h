@@ -18,10 +18,11 @@ enum class Generator : std::uint8_t {
   kHeightMap,
   kPlatform,
   kGap,
+  kGauntlet,
 };
 
-inline constexpr std::array<const char*, 7> kGeneratorNames{
-    "flat", "steps", "ramps", "clutter", "heightmap", "platform", "gap"};
+inline constexpr std::array<const char*, 8> kGeneratorNames{
+    "flat", "steps", "ramps", "clutter", "heightmap", "platform", "gap", "gauntlet"};
 
 // The world frame W has its origin on the ground under the robot's start, x towards the goal, y
 // left, z up. Every generated world keeps x < 0.4 m level at z = 0.

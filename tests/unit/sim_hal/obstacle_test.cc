@@ -21,7 +21,7 @@ ObstacleConfig cube(std::initializer_list<ObstaclePlace> places) {
 }
 
 TEST(Obstacle, MovesWhenTheTrunkPassesItsLineEitherWay) {
-  Obstacle obstacle(cube({{1.5, 0, 0, 0}, {1.2, 0.1, 0, 2.8}, {1.8, 0, 0, 0.2}}), 1);
+  Obstacle obstacle(cube({{1.5, 0, 0, 0}, {1.2, 0.1, 0, 2.8}, {1.8, 0, 0, 0.2}}), {}, 1);
   ASSERT_TRUE(obstacle.exists());
   EXPECT_EQ(obstacle.box().x_m, 1.5);
   for (const double x : {0.0, 1.0, 2.7, 2.79}) EXPECT_FALSE(obstacle.follow(x));
@@ -40,21 +40,21 @@ TEST(Obstacle, DrawsStayWithinTheirBoundsAndFollowTheSeed) {
   config.turn_rad = 0.5;
   std::set<double> places;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-    const TerrainBox box = Obstacle(config, seed).box();
+    const TerrainBox box = Obstacle(config, {}, seed).box();
     EXPECT_LE(std::fabs(box.x_m - 1.5), 0.1);
     EXPECT_LE(std::fabs(box.y_m), 0.1);
     EXPECT_LE(std::fabs(std::atan2(box.sin_yaw, box.cos_yaw)), 0.5);
-    EXPECT_EQ(Obstacle(config, seed).box().x_m, box.x_m);
+    EXPECT_EQ(Obstacle(config, {}, seed).box().x_m, box.x_m);
     places.insert(box.x_m);
   }
   EXPECT_GT(places.size(), 40U);
-  EXPECT_FALSE(Obstacle(ObstacleConfig{}, 1).exists());
+  EXPECT_FALSE(Obstacle(ObstacleConfig{}, {}, 1).exists());
 }
 
 // The same box as part of the terrain gives the same rays.
 TEST(Obstacle, RaysMeetItLikeABoxOfTheTerrain) {
   ObstacleConfig config = cube({{1.0, 0.1, 0.4, 0}});
-  const Obstacle obstacle(config, 1);
+  const Obstacle obstacle(config, {}, 1);
   Terrain bare;
   Terrain with_box;
   with_box.boxes.push_back(obstacle.box());

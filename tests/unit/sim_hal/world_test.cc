@@ -217,5 +217,39 @@ TEST(World, FiguresDescribeTheLane) {
   EXPECT_GT(figures.boxes, 30u);
 }
 
+// Clutter, obstacle, panels, platform, in this order, with level ground between them.
+TEST(Gauntlet, HasItsFourPartsInOrder) {
+  WorldSpec spec;
+  spec.generator = Generator::kGauntlet;
+  spec.height_m = 0.10;
+  spec.cover = 0.5;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Terrain terrain = make_terrain(spec, seed);
+    const auto highest_m = [&terrain](double x0, double x1) {
+      double highest = 0;
+      for (double x = x0; x <= x1; x += 0.01) {
+        for (double y = -0.3; y <= 0.3; y += 0.01) {
+          highest = std::max(highest, terrain.height_m(x, y));
+        }
+      }
+      return highest;
+    };
+    EXPECT_EQ(highest_m(-1.0, 0.39), 0);
+    EXPECT_GT(highest_m(0.4, 2.7), 0.05);
+    EXPECT_LE(highest_m(0.4, 2.7), 0.10);
+    EXPECT_GE(clutter_cover(terrain), 0.5);
+    EXPECT_EQ(highest_m(2.71, 4.6), 0);
+    ASSERT_TRUE(terrain.obstacle.has_value());
+    EXPECT_NEAR(terrain.obstacle->x_m, 3.8, 0.1);
+    EXPECT_TRUE(terrain.obstacle->covers(terrain.obstacle->x_m, 0));  // on the line
+    EXPECT_EQ(terrain.obstacle->top_m, 0.4);
+    EXPECT_GE(highest_m(4.7, 6.2), 0.06);  // four panels on one another
+    EXPECT_LE(highest_m(4.7, 6.2), 0.10);
+    EXPECT_EQ(highest_m(6.3, 6.95), 0);
+    EXPECT_EQ(highest_m(7.05, 8.5), 0.13);
+    EXPECT_EQ(terrain.height_m(8.0, 0), 0.13);
+  }
+}
+
 }  // namespace
 }  // namespace surefoot::sim
