@@ -24,10 +24,13 @@ JumpSettings gap(double gap_m) {
 
 }  // namespace
 
-std::vector<std::string> recipe_names() { return {"platform_0.13", "platform_0.25", "gap_0.2"}; }
+std::vector<std::string> recipe_names() {
+  return {"platform_0.13", "platform_0.19", "platform_0.25", "gap_0.2"};
+}
 
 std::optional<JumpSettings> recipe(const std::string& name) {
   if (name == "platform_0.13") return platform(0.13);
+  if (name == "platform_0.19") return platform(0.19);
   if (name == "platform_0.25") return platform(0.25);
   if (name == "gap_0.2") return gap(0.2);
   return std::nullopt;
