@@ -467,8 +467,8 @@ TEST_F(Standing, LargeImagesAreThinnedToTheBound) {
   EXPECT_EQ(cell_at(0.7, 0).state, CellState::kMeasured);
 }
 
-// A robot that fell: what it knew around the place is gone, what lies beyond stays, and wrong orders
-// change nothing.
+// A robot that fell: what it knew around the place is gone, what lies beyond stays, and wrong
+// orders change nothing.
 TEST_F(Standing, ForgetsASquareAndNothingBeyondIt) {
   AssumedPad pad;
   pad.half_length_m = 0.9;
