@@ -5,6 +5,15 @@
 #include "core/robot/kinematics.h"
 
 namespace surefoot::control {
+namespace {
+
+// Whether the map knows enough around the place to say what it is.
+bool classed(const mapping::MapWindow& window, const Vector3& place_O_m) {
+  const Result<mapping::CellIndex> index = window.locate(place_O_m[0], place_O_m[1]);
+  return index.ok() && window.at(index.value()).traversability != mapping::Traversability::kUnknown;
+}
+
+}  // namespace
 
 void FootholdPlanner::reset(const FootholdConfig& config, const robot::RobotModel& model) {
   config_ = config;
@@ -49,8 +58,7 @@ Foothold FootholdPlanner::choose(const Vector3& nominal_O_m, const mapping::MapW
   query.margin_weight_m = config_.margin_weight_m;
   const Result<mapping::Foothold> found = mapping::find_foothold(*window, query);
   if (!found.ok()) {
-    const bool blind =
-        unseen == UnseenGround::kAllowed && !window->height_at(nominal_O_m[0], nominal_O_m[1]).ok();
+    const bool blind = unseen == UnseenGround::kAllowed && !classed(*window, nominal_O_m);
     foothold.reason = blind ? FootholdReason::kUnseen : FootholdReason::kNone;
     return foothold;
   }

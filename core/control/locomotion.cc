@@ -20,6 +20,7 @@ void Locomotion::reset(const ControlConfig& config, const robot::RobotModel& mod
   model_ = model;
   gait_.reset(config.gaits.of(GaitKind::kTrot));
   footholds_.reset(config.foothold, model);
+  map_offset_.reset(config.foothold.max_map_offset_m, model.foot_radius_m);
   whole_body_.reset(config.whole_body, model);
   tracker_.reset(config.body, model);
   reference_ = BodyReference{};
@@ -36,6 +37,7 @@ void Locomotion::start(const estimation::RobotState& state) {
   command_ = VelocityCommand{};
   legs_.fill(LegStatus{});
   tracker_.start(state);
+  map_offset_.clear();
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     legs_[leg].anchor_O_m = state.feet[leg].p_O_m;
     legs_[leg].foothold.nominal_O_m = state.feet[leg].p_O_m;
@@ -82,6 +84,7 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
   const Vector2 off = (state.v_OB_m_s - reference_.v_OB_m_s).head<2>();
   const bool off_balance = off.squaredNorm() > math::square(config_.foothold.balance_error_m_s);
   unseen_ = off_balance ? UnseenGround::kAllowed : command.unseen;
+  map_offset_.update(state, legs_, window);
   bool blocked = false;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     advance_leg(leg, state, window, stepping, step_s);
@@ -157,10 +160,7 @@ void Locomotion::try_swing(std::size_t leg, const estimation::RobotState& state,
                            const mapping::MapWindow* window) {
   LegStatus& status = legs_[leg];
   if (status.landed_early) return;
-  const Vector3 nominal =
-      footholds_.nominal_O_m(leg, state, command_, gait_.legs()[leg].remaining_s,
-                             gait_.config().stance_s(), reference_.ground_z_m);
-  status.foothold = footholds_.choose(nominal, window, unseen_);
+  status.foothold = find_foothold(leg, state, window);
   if (status.foothold.reason == FootholdReason::kNone) {
     status.skipped_swing = true;
     return;
@@ -178,13 +178,22 @@ void Locomotion::follow_foothold(std::size_t leg, const estimation::RobotState& 
                                  const mapping::MapWindow* window) {
   LegStatus& status = legs_[leg];
   if (status.swing_progress > config_.foothold.lock_progress) return;
-  const Vector3 nominal =
-      footholds_.nominal_O_m(leg, state, command_, gait_.legs()[leg].remaining_s,
-                             gait_.config().stance_s(), reference_.ground_z_m);
-  const Foothold next = footholds_.choose(nominal, window, unseen_);
+  const Foothold next = find_foothold(leg, state, window);
   if (next.reason == FootholdReason::kNone) return;
   status.foothold = next;
   set_path(leg, window);
+}
+
+Foothold Locomotion::find_foothold(std::size_t leg, const estimation::RobotState& state,
+                                   const mapping::MapWindow* window) const {
+  const Vector3 nominal =
+      footholds_.nominal_O_m(leg, state, command_, gait_.legs()[leg].remaining_s,
+                             gait_.config().stance_s(), reference_.ground_z_m);
+  Foothold foothold = footholds_.choose(nominal, window, unseen_);
+  const bool from_map =
+      foothold.reason == FootholdReason::kNominal || foothold.reason == FootholdReason::kMoved;
+  if (from_map) foothold.position_O_m[2] += map_offset_.offset_m();
+  return foothold;
 }
 
 void Locomotion::set_path(std::size_t leg, const mapping::MapWindow* window) {
@@ -196,7 +205,9 @@ void Locomotion::set_path(std::size_t leg, const mapping::MapWindow* window) {
     const Result<double> obstacle =
         window->max_height_along(path.lift_off_O_m[0], path.lift_off_O_m[1], path.landing_O_m[0],
                                  path.landing_O_m[1], 2.0 * model_.foot_radius_m);
-    if (obstacle.ok()) highest = larger(highest, obstacle.value() + model_.foot_radius_m);
+    if (obstacle.ok()) {
+      highest = larger(highest, obstacle.value() + map_offset_.offset_m() + model_.foot_radius_m);
+    }
   }
   path.apex_O_m = highest + config_.swing.clearance_m;
 }

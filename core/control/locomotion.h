@@ -23,6 +23,7 @@
 #include "core/control/gait.h"
 #include "core/control/horizon_plan.h"
 #include "core/control/leg_status.h"
+#include "core/control/map_offset.h"
 #include "core/control/swing.h"
 #include "core/control/whole_body.h"
 #include "core/estimation/estimator.h"
@@ -69,6 +70,8 @@ class Locomotion {
                  const mapping::MapWindow* window);
   void follow_foothold(std::size_t leg, const estimation::RobotState& state,
                        const mapping::MapWindow* window);
+  Foothold find_foothold(std::size_t leg, const estimation::RobotState& state,
+                         const mapping::MapWindow* window) const;
   void set_path(std::size_t leg, const mapping::MapWindow* window);
   void plan_forces(const estimation::RobotState& state, const ForcePlan& plan);
   SwingPoint foot_target(std::size_t leg) const;
@@ -78,6 +81,7 @@ class Locomotion {
   robot::RobotModel model_;
   Gait gait_;
   FootholdPlanner footholds_;
+  MapOffset map_offset_;
   BodyReferenceTracker tracker_;
   BodyReference reference_;
   WholeBody whole_body_;

@@ -121,4 +121,13 @@ Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& que
   return best;
 }
 
+Result<double> level_ground_m(const MapWindow& window, double x_O_m, double y_O_m) {
+  const Result<CellIndex> index = window.locate(x_O_m, y_O_m);
+  if (!index.ok()) return index.status();
+  const WindowCell& cell = window.at(index.value());
+  const bool level = cell.traversability == Traversability::kSteppable && cell.margin_cells > 1;
+  if (!level) return Status::kNotFound;
+  return ground_height(window, index.value());
+}
+
 }  // namespace surefoot::mapping

@@ -46,4 +46,9 @@ struct Foothold {
 // window.
 Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& query);
 
+// Height of the ground under a foot at a place around which the ground bears feet everywhere: the
+// mean as in Foothold::z_O_m. Errors as MapWindow::locate; kNotFound: not steppable, or something
+// that is not is next to it.
+Result<double> level_ground_m(const MapWindow& window, double x_O_m, double y_O_m);
+
 }  // namespace surefoot::mapping

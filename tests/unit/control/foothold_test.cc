@@ -115,6 +115,21 @@ TEST(Footholds, UnseenGroundIsTakenOnlyWhereAllowed) {
   EXPECT_EQ(unseen.position_O_m, Vector3(9.0, 0.1, 0.0));
 }
 
+// A cell with a height and nothing around it: the map cannot say what it is.
+TEST(Footholds, GroundThatIsNotClassedCountsAsUnseen) {
+  FootholdPlanner planner;
+  planner.reset(config(), model());
+  const auto window = window_with_band(0.8, 1.2);
+  for (mapping::WindowCell& cell : window->cells) {
+    cell.traversability = mapping::Traversability::kUnknown;
+  }
+  const Vector3 place(1.0, 0.1, 0.0);
+  EXPECT_EQ(planner.choose(place, window.get(), UnseenGround::kAllowed).reason,
+            FootholdReason::kUnseen);
+  EXPECT_EQ(planner.choose(place, window.get(), UnseenGround::kRefused).reason,
+            FootholdReason::kNone);
+}
+
 TEST(Footholds, AreRefusedWhereNothingInReachBearsAFoot) {
   FootholdPlanner planner;
   planner.reset(config(), model());
