@@ -6,8 +6,9 @@
 namespace surefoot::autonomy {
 namespace {
 
-constexpr double kFolded_rad = 0.3;  // off the folded pose: too far to stand up from as it is
-constexpr double kForget_m = 1.5;    // around a robot that fell
+constexpr double kFolded_rad = 0.3;     // off the folded pose: too far to stand up from as it is
+constexpr double kForget_m = 1.5;       // around a robot that fell
+constexpr double kBrakingShare = 0.75;  // of the command's acceleration: the trunk lags behind it
 
 std::array<double, 3> to_array(const Vector3& v) { return {v[0], v[1], v[2]}; }
 
@@ -52,7 +53,7 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   }
   estimator_.reset(config.estimation, model, tick_s_);
   history_.clear();
-  mission_.reset(config.mission);
+  mission_.reset(config.mission, kBrakingShare * config.control.body.max_acceleration_m_s2);
   recovery_.reset(config.control.recovery, config.control.stand_up.folded_rad);
   stand_up_.reset(config.control.stand_up, model, config.control.body.height_m);
   locomotion_.reset(config.control, model);
@@ -84,7 +85,7 @@ void Autonomy::run_control() {
   facts.recovered = recovery_.done();
   facts.recovery_failed = recovery_.failed();
   facts.stand_up_done = stand_up_.done();
-  facts.all_in_stance = locomotion_.all_in_stance();
+  facts.at_rest = locomotion_.at_rest();
   facts.jump_refused = jump_pilot_.given_up();
   facts.fault = find_fault();
   mission_.update(state, facts, tick_s_);
@@ -280,7 +281,7 @@ void Autonomy::walk(const estimation::RobotState& state) {
   if (on_detour && !jump_pilot_.jumps()) {
     jump_pilot_.abandon();
   } else if (config_.mission.jump && (walks || jump_pilot_.jumps())) {
-    jump_pilot_.update(state, window(), footing_O_m_[2], locomotion_.all_in_stance(), tick_s_);
+    jump_pilot_.update(state, window(), footing_O_m_[2], locomotion_.at_rest(), tick_s_);
   }
   if (jump_pilot_.jumps()) {
     commands_ = jump_pilot_.joints();

@@ -8,12 +8,14 @@ namespace {
 constexpr double kDriveEnable_s = 1.0;  // drives must answer within this time after the rest
 constexpr double kFacingCosine = 0.7;   // looking farther away it turns on the spot: it sees ahead
 constexpr double kArrivedHold_s = 0.5;  // standing at the goal before the mission counts as done
+constexpr double kComeToRest_s = 4.0;   // braking and the last steps take no longer
 
 }  // namespace
 
-void Mission::reset(const MissionConfig& config) {
+void Mission::reset(const MissionConfig& config, double braking_m_s2) {
   *this = Mission{};
   config_ = config;
+  braking_m_s2_ = braking_m_s2;
   begin_line();
 }
 
@@ -83,7 +85,8 @@ void Mission::stop(StopReason reason) {
 
 bool Mission::finished() const {
   if (phase_ == MissionPhase::kStopped) return true;
-  return phase_ == MissionPhase::kArrived && phase_s_ >= kArrivedHold_s;
+  if (phase_ != MissionPhase::kArrived) return false;
+  return rested_s_ >= kArrivedHold_s || phase_s_ >= kComeToRest_s + kArrivedHold_s;
 }
 
 void Mission::update(const estimation::RobotState& state, const MissionFacts& facts,
@@ -94,7 +97,10 @@ void Mission::update(const estimation::RobotState& state, const MissionFacts& fa
   const bool may_fall = phase_ >= MissionPhase::kStandUp;
   if (config_.recover && may_fall && facts.fallen) return enter(MissionPhase::kRecover);
   if (facts.fault != StopReason::kNone) return stop(facts.fault);
-  if (phase_ == MissionPhase::kArrived) return;
+  if (phase_ == MissionPhase::kArrived) {
+    rested_s_ = facts.at_rest ? rested_s_ + step_s : 0.0;
+    return;
+  }
   if (elapsed_s_ >= config_.timeout_s) return stop(StopReason::kMissionTimeout);
 
   switch (phase_) {
@@ -130,6 +136,7 @@ void Mission::update(const estimation::RobotState& state, const MissionFacts& fa
 
 void Mission::arrive() {
   command_ = control::VelocityCommand{};
+  rested_s_ = 0;
   enter(MissionPhase::kArrived);
 }
 
@@ -143,7 +150,7 @@ void Mission::cross(const estimation::RobotState& state, double step_s) {
   const double sideways = math::clamp(-config_.line_gain_1_s * path_.left_m(state),
                                       -config_.max_lateral_m_s, config_.max_lateral_m_s);
   // A goal is a line to cross, a waypoint a place to reach.
-  double along_m_s = config_.speed_m_s;
+  double along_m_s = approach_speed_m_s(path_.length_m - path_.along_m(state));
   if (!config_.waypoints.empty()) {
     along_m_s = math::clamp(config_.line_gain_1_s * (path_.length_m - path_.along_m(state)),
                             -config_.max_lateral_m_s, config_.speed_m_s);
@@ -156,6 +163,13 @@ void Mission::cross(const estimation::RobotState& state, double step_s) {
   if (yaw.cos >= kFacingCosine) return;
   command_.forward_m_s = 0.0;
   command_.left_m_s = 0.0;
+}
+
+// From which the robot comes to a stand at the goal.
+double Mission::approach_speed_m_s(double left_m) const {
+  if (braking_m_s2_ <= 0) return config_.speed_m_s;
+  const double limit_m_s = math::sqrt(2.0 * braking_m_s2_ * math::clamp(left_m, 0.0, 1e3));
+  return math::clamp(limit_m_s, 0.0, config_.speed_m_s);
 }
 
 double Mission::turn_towards(const estimation::RobotState& state, double heading_rad) const {

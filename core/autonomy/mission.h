@@ -17,14 +17,15 @@ struct MissionFacts {
   bool recovered = false;
   bool recovery_failed = false;
   bool stand_up_done = false;
-  bool all_in_stance = false;
+  bool at_rest = false;       // on all feet, no step due
   bool jump_refused = false;  // an edge ahead, and the pilot has given up
   StopReason fault = StopReason::kNone;
 };
 
 class Mission {
  public:
-  void reset(const MissionConfig& config);
+  // braking_m_s2: how fast the speed comes down ahead of a goal; 0: not before it is reached.
+  void reset(const MissionConfig& config, double braking_m_s2 = 0);
   void update(const estimation::RobotState& state, const MissionFacts& facts, double step_s);
 
   MissionPhase phase() const { return phase_; }
@@ -67,14 +68,17 @@ class Mission {
   bool at_end(const estimation::RobotState& state) const;
   void note_progress(double to_go_m, double step_s);
   double turn_towards(const estimation::RobotState& state, double heading_rad) const;
+  double approach_speed_m_s(double left_m) const;
 
   MissionConfig config_;
+  double braking_m_s2_ = 0;
   MissionPhase phase_ = MissionPhase::kEnableDrives;
   StopReason stop_reason_ = StopReason::kNone;
   control::GaitKind gait_ = control::GaitKind::kStand;
   control::VelocityCommand command_;
   double elapsed_s_ = 0;
   double phase_s_ = 0;
+  double rested_s_ = 0;          // arrived: at rest without a break
   std::size_t script_step_ = 0;  // mission script: the line in hand
   double script_s_ = 0;          // time spent in it
   std::size_t waypoint_ = 0;     // mission cross: the one ahead

@@ -11,6 +11,11 @@ double ramp(double value, double target, double max_change) {
   return value + math::clamp(target - value, -max_change, max_change);
 }
 
+// The ramp ends in exact zeros.
+bool is_zero(const VelocityCommand& c) {
+  return c.forward_m_s == 0.0 && c.left_m_s == 0.0 && c.yaw_rate_rad_s == 0.0;
+}
+
 double larger(double a, double b) { return a > b ? a : b; }
 
 }  // namespace
@@ -27,6 +32,7 @@ void Locomotion::reset(const ControlConfig& config, const robot::RobotModel& mod
   command_ = VelocityCommand{};
   unseen_ = UnseenGround::kRefused;
   gait_running_ = false;
+  halted_s_ = 0;
   blocked_s_ = 0;
   legs_.fill(LegStatus{});
   joints_ = actuation::JointCommands{};
@@ -66,11 +72,10 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
                                                    const mapping::MapWindow* window,
                                                    const WalkCommand& command,
                                                    const ForcePlan& plan, double step_s) {
-  const bool stepping = command.gait != GaitKind::kStand;
+  const bool walking = command.gait != GaitKind::kStand;
   // Without footholds the body must not run ahead of its feet.
   constexpr double kBlockedSlowdown_s = 0.5;
-  const double share =
-      stepping ? math::clamp(1.0 - blocked_s_ / kBlockedSlowdown_s, 0.0, 1.0) : 0.0;
+  const double share = walking ? math::clamp(1.0 - blocked_s_ / kBlockedSlowdown_s, 0.0, 1.0) : 0.0;
   const double change = config_.body.max_acceleration_m_s2 * step_s;
   const VelocityCommand& wanted = command.velocity;
   command_.forward_m_s = ramp(command_.forward_m_s, wanted.forward_m_s * share, change);
@@ -78,7 +83,7 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
   command_.yaw_rate_rad_s =
       ramp(command_.yaw_rate_rad_s, wanted.yaw_rate_rad_s * share, 4.0 * change);
 
-  advance_gait(command.gait, step_s);
+  const bool stepping = advance_gait(command.gait, step_s);
   tracker_.update(state, command_, step_s);
   reference_ = tracker_.reference();
   const Vector2 off = (state.v_OB_m_s - reference_.v_OB_m_s).head<2>();
@@ -90,23 +95,26 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
     advance_leg(leg, state, window, stepping, step_s);
     blocked = blocked || legs_[leg].skipped_swing;
   }
-  if (stepping) blocked_s_ = blocked ? blocked_s_ + step_s : larger(0.0, blocked_s_ - step_s);
+  if (walking) blocked_s_ = blocked ? blocked_s_ + step_s : larger(0.0, blocked_s_ - step_s);
 
   plan_forces(state, plan);
   control_body(state);
   return joints_;
 }
 
-// The clock stands still while all legs stand and no step is wanted, and starts from the beginning.
-void Locomotion::advance_gait(GaitKind gait, double step_s) {
-  const bool stepping = gait != GaitKind::kStand;
-  if (stepping && !gait_running_) {
+// The clock stands still while all legs stand and no step is due, and starts from the beginning.
+bool Locomotion::advance_gait(GaitKind gait, double step_s) {
+  const bool walking = gait != GaitKind::kStand;
+  if (walking && !gait_running_) {
     gait_.reset(config_.gaits.of(gait));
     gait_running_ = true;
   }
-  if (stepping) gait_.change_to(config_.gaits.of(gait));
+  if (walking) gait_.change_to(config_.gaits.of(gait));
+  halted_s_ = walking || !is_zero(command_) ? 0.0 : halted_s_ + step_s;
+  const bool stepping = gait_running_ && halted_s_ < gait_.config().period_s;
   if (!stepping && all_in_stance()) gait_running_ = false;
   if (gait_running_) gait_.advance(step_s);
+  return stepping;
 }
 
 void Locomotion::advance_leg(std::size_t leg, const estimation::RobotState& state,

@@ -45,8 +45,9 @@ class Locomotion {
   // All legs in stance at the present pose: call once when stand-up is done.
   void start(const estimation::RobotState& state);
 
-  // command.gait: kStand holds the robot in four-legged stance (swings under way are finished); a
-  // change of gait takes place where the present cycle ends.
+  // command.gait: kStand brings the robot to rest in four-legged stance: it steps on while the
+  // commanded speed comes down, and one cycle more, which puts the feet below the hips. A change of
+  // gait takes place where the present cycle ends.
   const actuation::JointCommands& update(const estimation::RobotState& state,
                                          const mapping::MapWindow* window,
                                          const WalkCommand& command, const ForcePlan& plan,
@@ -58,12 +59,15 @@ class Locomotion {
   // What the contact estimator needs to know of the plan.
   std::array<estimation::GaitPhase, robot::kLegs> gait_phases() const;
   bool all_in_stance() const;
+  // All in stance, and no further step is due.
+  bool at_rest() const { return !gait_running_ && all_in_stance(); }
   // How long a leg has been without a foothold, 0 when every leg has one.
   double blocked_s() const { return blocked_s_; }
   const BodyReference& reference() const { return reference_; }
 
  private:
-  void advance_gait(GaitKind gait, double step_s);
+  // Whether legs may be lifted.
+  bool advance_gait(GaitKind gait, double step_s);
   void advance_leg(std::size_t leg, const estimation::RobotState& state,
                    const mapping::MapWindow* window, bool stepping, double step_s);
   void try_swing(std::size_t leg, const estimation::RobotState& state,
@@ -88,6 +92,7 @@ class Locomotion {
   VelocityCommand command_;  // ramped
   UnseenGround unseen_ = UnseenGround::kRefused;
   bool gait_running_ = false;
+  double halted_s_ = 0;  // since the commanded speed has come down to zero in order to stand
   double blocked_s_ = 0;
   std::array<LegStatus, robot::kLegs> legs_;
   actuation::JointCommands joints_;

@@ -31,7 +31,7 @@ MissionFacts healthy() {
   MissionFacts facts;
   facts.drives_ready = true;
   facts.stand_up_done = true;
-  facts.all_in_stance = true;
+  facts.at_rest = true;
   return facts;
 }
 
@@ -72,6 +72,55 @@ TEST(Mission, ArrivesByTheRobotsOwnEstimateAndHoldsBeforeItIsFinished) {
   for (int tick = 0; tick < 300; ++tick) mission.update(state, healthy(), kStep_s);
   EXPECT_TRUE(mission.finished());
   EXPECT_EQ(mission.stop_reason(), StopReason::kNone);
+}
+
+TEST(Mission, IsFinishedWhenTheRobotHasComeToRestOrNeverDoes) {
+  estimation::RobotState state;
+  state.p_OB_m = Vector3(3.0, 0.0, 0.3);
+  Mission mission;
+  mission.reset(cross());
+  ASSERT_GE(ticks_until(mission, MissionPhase::kArrived, state, healthy(), 1000), 0);
+  MissionFacts stepping = healthy();
+  stepping.at_rest = false;
+  for (int tick = 0; tick < 500; ++tick) mission.update(state, stepping, kStep_s);
+  EXPECT_FALSE(mission.finished());
+  for (int tick = 0; tick < 200; ++tick) mission.update(state, healthy(), kStep_s);
+  EXPECT_FALSE(mission.finished());
+  mission.update(state, stepping, kStep_s);  // one more step: the hold begins anew
+  for (int tick = 0; tick < 249; ++tick) mission.update(state, healthy(), kStep_s);
+  EXPECT_FALSE(mission.finished());
+  for (int tick = 0; tick < 2; ++tick) mission.update(state, healthy(), kStep_s);
+  EXPECT_TRUE(mission.finished());
+
+  Mission restless;
+  restless.reset(cross());
+  ASSERT_GE(ticks_until(restless, MissionPhase::kArrived, state, healthy(), 1000), 0);
+  for (int tick = 0; tick < 2260; ++tick) restless.update(state, stepping, kStep_s);
+  EXPECT_TRUE(restless.finished());
+}
+
+// Its speed is what stops it at the goal at the given deceleration: v dv/dx = -a.
+TEST(Mission, BrakesAheadOfTheGoal) {
+  constexpr double kBraking_m_s2 = 0.6;
+  Mission mission;
+  mission.reset(cross(), kBraking_m_s2);
+  estimation::RobotState state;
+  ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 0);
+  double last_m_s = 0.5;
+  for (double x_m = 2.0; x_m < 2.949; x_m += 0.001) {
+    state.p_OB_m = Vector3(x_m, 0.0, 0.3);
+    mission.update(state, healthy(), kStep_s);
+    const double v_m_s = mission.command().forward_m_s;
+    const double braking_m_s2 = (last_m_s - v_m_s) * 0.5 * (last_m_s + v_m_s) / 0.001;
+    EXPECT_GT(v_m_s, 0.2);
+    EXPECT_GE(braking_m_s2, -1e-9);
+    EXPECT_LE(braking_m_s2, kBraking_m_s2 * (1 + 1e-9));
+    if (x_m < 2.79) {
+      EXPECT_EQ(v_m_s, 0.5);
+    }
+    last_m_s = v_m_s;
+  }
+  EXPECT_LT(last_m_s, 0.25);
 }
 
 TEST(Mission, SteersBackToTheLineWhateverTheHeading) {

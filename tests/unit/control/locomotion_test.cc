@@ -1,5 +1,5 @@
 // Which forces reach whole-body control: those of the plan while it covers the present, the shared
-// weight otherwise.
+// weight otherwise. How a trot ends.
 #include "core/control/locomotion.h"
 
 #include <gtest/gtest.h>
@@ -21,6 +21,11 @@ struct Standing {
     config.body.max_acceleration_m_s2 = 1.0;
     config.body.max_reference_error_m = 0.05;
     config.mpc.step_s = 0.03;
+    GaitConfig& trot = config.gaits.gaits[static_cast<std::size_t>(GaitKind::kTrot)];
+    trot.period_s = 0.3;
+    trot.stance_share = 0.5;
+    trot.offset = {0.0, 0.5, 0.5, 0.0};
+    config.swing.clearance_m = 0.05;
     config.whole_body.friction = 0.4;
     config.whole_body.max_normal_N = 150;
     config.whole_body.force_weight = 1.0;
@@ -54,6 +59,21 @@ struct Standing {
     locomotion->update(state, nullptr, WalkCommand{}, plan, 0.002);
     return locomotion->legs()[0].force_O_N[2];
   }
+  // One tick; feet touch the ground where they do not swing. The number of swings begun.
+  int walk(const WalkCommand& command) {
+    std::array<bool, robot::kLegs> swung{};
+    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+      swung[leg] = locomotion->legs()[leg].mode == LegMode::kSwing;
+      state.feet[leg].in_contact = !swung[leg];
+    }
+    state.stamp = state.stamp + milliseconds(2);
+    locomotion->update(state, nullptr, command, plan, 0.002);
+    int begun = 0;
+    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+      begun += !swung[leg] && locomotion->legs()[leg].mode == LegMode::kSwing ? 1 : 0;
+    }
+    return begun;
+  }
   double share_N() const { return model.total_mass_kg() * kGravity_m_s2 / 4.0; }
 
   robot::RobotModel model = robot::full_mini_cheetah();
@@ -79,6 +99,32 @@ TEST(Locomotion, APlanFromBeforeAFallIsNotUsed) {
   Standing robot;
   robot.plan.valid = true;
   EXPECT_NEAR(robot.force_N(5.0), robot.share_N(), 0.05);
+}
+
+// From 0.5 m/s at 1 m/s^2: half a second of braking, one more cycle for all four feet, the swings
+// under way, no step afterwards.
+TEST(Locomotion, TrotsUntilItsSpeedIsGoneAndOneCycleMore) {
+  Standing robot;
+  WalkCommand command;
+  robot.walk(command);
+  EXPECT_TRUE(robot.locomotion->at_rest());
+  command.gait = GaitKind::kTrot;
+  command.velocity.forward_m_s = 0.5;
+  for (int tick = 0; tick < 400; ++tick) robot.walk(command);
+  EXPECT_FALSE(robot.locomotion->at_rest());
+  int ticks = 0;
+  int swings_at_rest_speed = 0;
+  for (; ticks < 1000 && !robot.locomotion->at_rest(); ++ticks) {
+    const int begun = robot.walk(WalkCommand{});
+    if (ticks >= 250) swings_at_rest_speed += begun;
+  }
+  EXPECT_GE(ticks, 250 + 149);
+  EXPECT_LE(ticks, 250 + 150 + 76);
+  EXPECT_EQ(swings_at_rest_speed, 4);
+  for (int tick = 0; tick < 500; ++tick) {
+    EXPECT_EQ(robot.walk(WalkCommand{}), 0);
+    EXPECT_TRUE(robot.locomotion->at_rest());
+  }
 }
 
 }  // namespace
