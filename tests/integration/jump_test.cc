@@ -6,12 +6,12 @@
 namespace surefoot {
 namespace {
 
-struct Run {
+struct JumpOutcome {
   int code = 0;
   nlohmann::json summary;
 };
 
-Run jump(const Scratch& scratch, const std::string& world, const std::string& more) {
+JumpOutcome jump(const Scratch& scratch, const std::string& world, const std::string& more) {
   const ProgramResult result =
       run_program("surefoot run --robot mini_cheetah --mission platform --seed 9 --quiet --world " +
                   world + " --out " + scratch.text("run") + " " + more);
@@ -22,7 +22,7 @@ class JumpRun : public testing::TestWithParam<const char*> {};
 
 TEST_P(JumpRun, LandsOnFourFeetWithinTheMotorsLimitsAndWalksOn) {
   const Scratch scratch;
-  const Run run = jump(scratch, GetParam(), "--report off");
+  const JumpOutcome run = jump(scratch, GetParam(), "--report off");
   EXPECT_EQ(run.code, 0) << run.summary["reason"];
   EXPECT_EQ(run.summary["outcome"], "goal");
   const nlohmann::json& figures = run.summary["jump"];
@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(Worlds, JumpRun,
 
 TEST(JumpRefusal, AWallIsTheEndOfTheWayAndTheReasonIsNamed) {
   const Scratch scratch;
-  const Run run = jump(scratch, "platform:height=0.4", "--record off --report off");
+  const JumpOutcome run = jump(scratch, "platform:height=0.4", "--record off --report off");
   EXPECT_EQ(run.code, 1);
   EXPECT_EQ(run.summary["outcome"], "no_path");
   EXPECT_EQ(run.summary["jump"]["jumps"], 0);
