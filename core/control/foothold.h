@@ -40,8 +40,8 @@ class FootholdPlanner {
 
   // Moves the nominal point to ground that can bear a foot. window: null when mapping is off.
   // reason kNone: nothing within the search radius; position is the nominal point, not to be used.
-  // kUnseen: the same, but the map knows too little around the nominal point to class it, and unseen
-  // ground is allowed.
+  // kUnseen: the same, but the map knows too little around the nominal point to class it, and
+  // unseen ground is allowed.
   // Cost: a look-up, or a spiral over the search radius.
   Foothold choose(const Vector3& nominal_O_m, const mapping::MapWindow* window,
                   UnseenGround unseen) const;

@@ -12,8 +12,10 @@ using autonomy::MissionPhase;
 
 // Short waits: they take no work of interest, and the whole way up runs under callgrind.
 std::vector<std::string> quick(const std::vector<std::string>& more) {
+  // The kinematic robot's feet do not hold its trunk: what they say of the ground is not true.
   std::vector<std::string> sets{"mission.rest_s=0.1", "mission.settle_s=0.1",
-                                "control.stand_up.fold_s=0.1", "control.stand_up.rise_s=0.2"};
+                                "control.stand_up.fold_s=0.1", "control.stand_up.rise_s=0.2",
+                                "control.foothold.max_map_offset_m=0.0"};
   sets.insert(sets.end(), more.begin(), more.end());
   return sets;
 }
