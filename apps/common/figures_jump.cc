@@ -7,6 +7,7 @@
 
 #include "apps/common/axes.h"
 #include "apps/common/figures.h"
+#include "apps/common/leg_curves.h"
 #include "core/geometry/rotations.h"
 #include "core/robot/kinematics.h"
 
@@ -23,9 +24,6 @@ constexpr double kHalf_m = 0.38;    // shown of the world before and behind the 
 constexpr double kHeight_m = 0.74;  // shown from the ground at the take-off
 constexpr double kBelow_m = 0.06;
 constexpr double kAfter_s = 0.15;  // of the landing
-constexpr std::array<const char*, robot::kLegs> kLegNames{"FR", "FL", "HR", "HL"};
-constexpr std::array<Colour, robot::kLegs> kLegColours{palette::kBlue, palette::kOrange,
-                                                       palette::kGreen, palette::kPurple};
 constexpr Colour kFarLegs{168, 174, 184};
 
 // Samples [begin, end) of the last jump: from the push to a little after the touchdown.
@@ -178,8 +176,6 @@ Drawing jump_figure(const RunLog& log, const robot::RobotModel& robot, const Tru
         {11, palette::kFaint, Anchor::kMiddle});
     marks.push_back(seconds(i));
   }
-  constexpr std::array<const char*, robot::kJointsPerLeg> kTitles{
-      "Torque of the abduction joints", "Torque of the hip joints", "Torque of the knee joints"};
   std::vector<double> t;
   for (std::size_t i = span.begin; i < span.end; ++i) t.push_back(seconds(i));
   for (std::size_t joint = 0; joint < robot::kJointsPerLeg; ++joint) {
@@ -187,25 +183,12 @@ Drawing jump_figure(const RunLog& log, const robot::RobotModel& robot, const Tru
     const bool last = joint + 1 == robot::kJointsPerLeg;
     const Rectangle area{kLeft, kTop + kStrip + 52 + kRow * static_cast<double>(joint),
                          kWidth - kLeft - kRight, 128};
-    Axes axes(drawing, area, {t.front(), t.back()}, {-1.12 * limit, 1.12 * limit},
-              {kTitles[joint], last ? "time since the push began [s]" : "", "N m", 10, 4, true});
+    Axes axes(
+        drawing, area, {t.front(), t.back()}, {-1.12 * limit, 1.12 * limit},
+        {kTorqueTitles[joint], last ? "time since the push began [s]" : "", "N m", 10, 4, true});
     for (const double mark : marks) axes.vertical(mark, {palette::kGrid, 1.4, false});
-    std::vector<LegendItem> legend;
-    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-      std::vector<double> torque;
-      const std::size_t index = robot::joint_index(leg, joint);
-      for (std::size_t i = span.begin; i < span.end; ++i) {
-        torque.push_back(samples[i].telemetry.joints[index].torque_Nm);
-      }
-      const Stroke stroke{kLegColours[leg], 1.2, false};
-      axes.series(t, torque, stroke);
-      legend.push_back({kLegNames[leg], stroke});
-    }
-    const Stroke bound{palette::kRed, 1.4, true};
-    axes.horizontal(limit, bound);
-    axes.horizontal(-limit, bound);
-    legend.push_back({"limit", bound});
-    axes.legend(legend);
+    draw_torques(axes, t, std::span(samples).subspan(span.begin, span.end - span.begin), joint,
+                 limit, 1.2);
   }
   return drawing;
 }

@@ -8,6 +8,7 @@
 
 #include "apps/common/axes.h"
 #include "apps/common/figures.h"
+#include "apps/common/leg_curves.h"
 
 namespace surefoot::apps {
 namespace {
@@ -15,9 +16,6 @@ namespace {
 constexpr double kWidth = 1000;
 constexpr double kLeft = 66;
 constexpr double kBar = 120;  // right of the maps: colour bar and its numbers
-constexpr std::array<Colour, 4> kLegColours{palette::kBlue, palette::kOrange, palette::kGreen,
-                                            palette::kPurple};
-constexpr std::array<const char*, 4> kLegNames{"FR", "FL", "HR", "HL"};
 
 using Scale = Colour (*)(double share);
 

@@ -9,6 +9,7 @@
 
 #include "apps/common/axes.h"
 #include "apps/common/figures.h"
+#include "apps/common/leg_curves.h"
 
 namespace surefoot::apps {
 namespace {
@@ -17,9 +18,6 @@ constexpr double kWidth = 1000;
 constexpr double kLeft = 66;
 constexpr double kRight = 34;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr std::array<const char*, robot::kLegs> kLegNames{"FR", "FL", "HR", "HL"};
-constexpr std::array<Colour, robot::kLegs> kLegColours{palette::kBlue, palette::kOrange,
-                                                       palette::kGreen, palette::kPurple};
 
 using Value = std::function<double(const RunSample&)>;
 
@@ -112,8 +110,6 @@ Drawing motion_figure(const RunLog& log) {
 
 Drawing torque_figure(const RunLog& log, const robot::RobotModel& robot) {
   constexpr double kRowHeight = 190;
-  constexpr std::array<const char*, robot::kJointsPerLeg> kTitles{
-      "Torque of the abduction joints", "Torque of the hip joints", "Torque of the knee joints"};
   Drawing drawing(kWidth, 3 * kRowHeight + 66);
   const std::vector<double> t = seconds(log);
   for (std::size_t joint = 0; joint < robot::kJointsPerLeg; ++joint) {
@@ -121,23 +117,8 @@ Drawing torque_figure(const RunLog& log, const robot::RobotModel& robot) {
     const bool last = joint + 1 == robot::kJointsPerLeg;
     Axes axes(drawing, row_area(static_cast<int>(joint), kRowHeight, 140), time_limits(t),
               {-1.12 * limit, 1.12 * limit},
-              {kTitles[joint], last ? "time [s]" : "", "N m", 10, 4, true});
-    std::vector<LegendItem> legend;
-    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-      const Stroke stroke{kLegColours[leg], 1, false};
-      axes.series(t,
-                  column(log,
-                         [&](const RunSample& s) {
-                           return s.telemetry.joints[robot::joint_index(leg, joint)].torque_Nm;
-                         }),
-                  stroke);
-      legend.push_back({kLegNames[leg], stroke});
-    }
-    const Stroke bound{palette::kRed, 1.4, true};
-    axes.horizontal(limit, bound);
-    axes.horizontal(-limit, bound);
-    legend.push_back({"limit", bound});
-    axes.legend(legend);
+              {kTorqueTitles[joint], last ? "time [s]" : "", "N m", 10, 4, true});
+    draw_torques(axes, t, log.samples(), joint, limit, 1);
   }
   return drawing;
 }

@@ -25,7 +25,7 @@ bool differs(const JointCommand& a, const JointCommand& b) {
          a.kd_Nm_s_rad != b.kd_Nm_s_rad || a.torque_Nm != b.torque_Nm;
 }
 
-double magnitude(double x) { return x < 0.0 ? -x : x; }
+using math::magnitude;
 
 std::span<const std::uint8_t> payload(const hal::CanFrame& frame) {
   return {frame.data.data(), std::min<std::size_t>(frame.size, frame.data.size())};

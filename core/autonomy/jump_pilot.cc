@@ -8,7 +8,7 @@ namespace {
 using motions::JumpRefusal;
 using motions::JumpStage;
 
-double magnitude(double x) { return x < 0 ? -x : x; }
+using math::magnitude;
 
 }  // namespace
 

@@ -15,7 +15,7 @@ constexpr std::int32_t kFarCells = 3;   // in a row that make a far side
 constexpr double kTopFrom_m = 0.03;     // behind the edge, where its height is taken
 constexpr double kTopTo_m = 0.20;
 
-double magnitude(double x) { return x < 0 ? -x : x; }
+using math::magnitude;
 
 // Where a line ends, in the frame of the query: x along the heading.
 struct End {

@@ -15,7 +15,7 @@ constexpr int kMaxSpreads = 2;
 constexpr double kQuietJoint_rad_s = 0.4;
 
 double smooth(double s) { return s * s * (3.0 - 2.0 * s); }
-double magnitude(double x) { return x < 0 ? -x : x; }
+using math::magnitude;
 double longest_look_s(bool upright) { return upright ? kLongestLook_s : kLongestLookBeforeRoll_s; }
 Lie mirrored(Lie side) { return side == Lie::kRightDown ? Lie::kLeftDown : Lie::kRightDown; }
 

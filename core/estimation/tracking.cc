@@ -108,7 +108,7 @@ void DriftEstimator::average(const Observation& now) {
 
 // Of the gain on an error: a leaky dead zone.
 double DriftEstimator::weight(double error, double own) const {
-  const double size = error < 0 ? -error : error;
+  const double size = math::magnitude(error);
   const double beyond = size > own ? (size - own) / size : 0.0;
   return config_.own_error_share + (1.0 - config_.own_error_share) * beyond;
 }

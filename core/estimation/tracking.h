@@ -99,7 +99,6 @@ class DriftEstimator {
   Vector3 p_BT_m_ = Vector3::Zero();
   bool anchored_ = false;
   int averaged_ = 0;  // samples since S was found or moved
-  TimeNs found_;      // stamp of the first sample since O was placed
   TimeNs stamp_;
   Matrix3 R_OS_ = Matrix3::Identity();
   Vector3 p_OB_camera_m_ = Vector3::Zero();  // the camera's way, summed up in O

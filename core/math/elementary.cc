@@ -25,8 +25,6 @@ constexpr double kMaxAngle_rad = 1e6;
 constexpr Pair kHalfPi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 constexpr Pair kWholePi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
 
-constexpr double magnitude(double x) { return x < 0 ? -x : x; }
-
 Pair two_sum(double a, double b) {
   const double sum = a + b;
   const double b_part = sum - a;

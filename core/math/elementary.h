@@ -42,6 +42,8 @@ constexpr T clamp(T value, T low, T high) {
   return value < low ? low : (high < value ? high : value);
 }
 
+constexpr double magnitude(double x) { return x < 0 ? -x : x; }
+
 template <class T>
 constexpr T square(T value) {
   return value * value;

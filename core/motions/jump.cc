@@ -16,7 +16,7 @@ constexpr double kEarly_s = 0.15;
 constexpr double kStrike_s = 0.04;  // feet that strike the ground slide on it
 
 double smooth(double s) { return s * s * (3.0 - 2.0 * s); }
-double magnitude(double x) { return x < 0 ? -x : x; }
+using math::magnitude;
 
 }  // namespace
 

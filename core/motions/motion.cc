@@ -1,12 +1,14 @@
 #include "core/motions/motion.h"
 
+#include "core/math/elementary.h"
+
 namespace surefoot::motions {
 namespace {
 
 // Files hold rounded numbers.
 constexpr double kRounding = 1e-3;
 
-double magnitude(double x) { return x < 0 ? -x : x; }
+using math::magnitude;
 
 MotionFault check_joint(const MotionRow& row, std::size_t planar, const robot::RobotModel& model) {
   const robot::Actuator& actuator = model.actuators[leg_joint(planar)];
