@@ -340,9 +340,12 @@ Drawing terrain_figure(const RunLog& log, const TerrainFigure& figure) {
     draw_true_traces(log, axes);
     draw_obstacle(drawing, log, figure.obstacle, axes);
   }
-  Axes map = panels.heights(row++, figure.perceived, heights, height_colour,
-                            "Perceived map, with the fields of obstacles (rings) at the end",
-                            "height [m]", false);
+  const bool fields =
+      !log.samples().empty() && !log.samples().back().telemetry.obstacles.fields_O_m.empty();
+  Axes map = panels.heights(
+      row++, figure.perceived, heights, height_colour,
+      fields ? "Perceived map, with the fields of obstacles (rings) at the end" : "Perceived map",
+      "height [m]", false);
   draw_fields(log, figure.O_in_W, drawing, map);
   Axes axes = panels.classes(row++, figure.classes, "Classes and footholds", !with_truth);
   axes.legend(foothold_legend(draw_footholds(drawing, log.touchdowns(), figure.O_in_W, axes)));

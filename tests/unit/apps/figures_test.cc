@@ -119,6 +119,7 @@ TEST(Figures, TerrainShowsFourPanelsAndTheReasonsOfMovedFootholds) {
   EXPECT_NE(svg.find("moved to bear a foot ("), std::string::npos);
   EXPECT_NE(svg.find("unseen (0)"), std::string::npos);
   EXPECT_NE(svg.find("impassable"), std::string::npos);
+  EXPECT_EQ(svg.find("fields of obstacles"), std::string::npos);  // there are none
   EXPECT_GT(log.touchdowns().size(), 50u);
 }
 
