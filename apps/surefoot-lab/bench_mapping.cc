@@ -90,8 +90,8 @@ class PaperInOpenCv {
 bool same(const Filter& filter, const PaperInOpenCv& paper) {
   for (int y = 0; y < kWindowSide; ++y) {
     for (int x = 0; x < kWindowSide; ++x) {
-      if (filter.opened().row(y)[x] != paper.opened.at<float>(y, x)) return false;
-      if (filter.gradient_map().row(y)[x] != paper.gradient.at<float>(y, x)) return false;
+      if (filter.opened_m(x, y) != paper.opened.at<float>(y, x)) return false;
+      if (filter.gradient_m(x, y) != paper.gradient.at<float>(y, x)) return false;
     }
   }
   return true;

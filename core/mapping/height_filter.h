@@ -34,30 +34,39 @@ constexpr float on_filter_grid(float height_m) {
 // A grid with a margin around it, so that no filter needs to ask where the grid ends.
 template <class Cell, std::int32_t kSide>
 class PaddedGrid {
-  static_assert(sizeof(Cell) == 4);
-  static_assert(kSide % kLanes == 0);
+  static_assert(kSide % 2 == 0 && kSide >= kByteLanes);
 
  public:
   static constexpr std::int32_t kReach = 2;  // of the kernel
-  static constexpr std::int32_t kPad = kLanes;
-  static constexpr std::int32_t stride() { return kSide + 2 * kPad; }
+  static constexpr std::int32_t kPad = kShortLanes;
+  static constexpr std::int32_t stride() {
+    return (kSide + kShortLanes - 1) / kShortLanes * kShortLanes + 2 * kPad;
+  }
 
   // Every cell and the margin.
   void fill(Cell value) { cells_.fill(value); }
   // y in [-kReach, kSide + kReach); from the pointer, x in [-kPad, kSide + kPad).
   Cell* row(std::int32_t y) { return cells_.data() + place(y); }
   const Cell* row(std::int32_t y) const { return cells_.data() + place(y); }
+  // Gives the margin that the kernel reaches the values of the outermost cells.
+  void repeat_border() {
+    for (std::int32_t y = 0; y < kSide; ++y) {
+      std::fill_n(row(y) - kReach, kReach, row(y)[0]);
+      std::fill_n(row(y) + kSide, kReach, row(y)[kSide - 1]);
+    }
+    for (std::int32_t i = 1; i <= kReach; ++i) {
+      std::copy_n(row(0) - kReach, kSide + 2 * kReach, row(-i) - kReach);
+      std::copy_n(row(kSide - 1) - kReach, kSide + 2 * kReach, row(kSide - 1 + i) - kReach);
+    }
+  }
 
  private:
   static std::size_t place(std::int32_t y) {
     const std::int32_t index = (y + kReach) * stride() + kPad;
     return static_cast<std::size_t>(index);
   }
-  std::array<Cell, static_cast<std::size_t>(kSide + 2 * kReach) * stride()> cells_{};
+  alignas(16) std::array<Cell, static_cast<std::size_t>(kSide + 2 * kReach) * stride()> cells_{};
 };
-
-template <std::int32_t kSide>
-using FilterGrid = PaddedGrid<float, kSide>;
 
 // Cells [x_begin, x_end) x [y_begin, y_end).
 struct CellRect {
@@ -67,135 +76,208 @@ struct CellRect {
   std::int32_t y_end = 0;
 
   constexpr bool empty() const { return x_begin >= x_end || y_begin >= y_end; }
-  // Grown by `cells` on all sides and, in x, to whole lanes; not beyond the grid.
+  // Grown by `cells` on all sides and to whole lanes and pairs of rows; not beyond the grid.
   constexpr CellRect grown(std::int32_t cells, std::int32_t side) const {
     if (empty()) return {};
-    const std::int32_t x_low = std::max(x_begin - cells, 0);
-    return {x_low - x_low % kLanes, std::min((x_end + cells + kLanes - 1) / kLanes * kLanes, side),
-            std::max(y_begin - cells, 0), std::min(y_end + cells, side)};
+    const auto down = [cells](std::int32_t i, std::int32_t multiple) {
+      return std::max(i - cells, 0) / multiple * multiple;
+    };
+    const auto up = [cells, side](std::int32_t i, std::int32_t multiple) {
+      return std::min((i + cells + multiple - 1) / multiple * multiple, side);
+    };
+    return {down(x_begin, kShortLanes), up(x_end, kShortLanes), down(y_begin, 2), up(y_end, 2)};
   }
 };
+
+// Calls visit(x) for every group of `kCount` cells that a row of `rect` needs. Where the grid ends
+// within a group the last one begins earlier: some cells are computed twice, to the same result.
+template <std::int32_t kCount, std::int32_t kSide, class Visit>
+[[gnu::always_inline]] inline void for_lanes(const CellRect& rect, Visit&& visit) {
+  for (std::int32_t x = rect.x_begin; x < rect.x_end; x += kCount) {
+    visit(std::min(x, kSide - kCount));
+  }
+}
 
 struct Erosion {
-  static constexpr float kNeutral = kNowhere_m;  // for the margin of the grid it reads
-  static Lanes combine(Lanes a, Lanes b) { return smaller(a, b); }
-  static LaneMask found_nothing(Lanes a) { return a > all_lanes(kLargestHeight_m); }
+  template <class Numbers>
+  static Numbers combine(Numbers a, Numbers b) {
+    return smaller(a, b);
+  }
 };
 struct Dilation {
-  static constexpr float kNeutral = -kNowhere_m;
-  static Lanes combine(Lanes a, Lanes b) { return larger(a, b); }
-  static LaneMask found_nothing(Lanes a) { return a < all_lanes(-kLargestHeight_m); }
-};
-// Cells that are not one of the numbers above: how many of the kernel's cells hold a one.
-struct Sum {
-  static constexpr float kNeutral = 0;
-  static Lanes combine(Lanes a, Lanes b) { return a + b; }
-};
-
-// What follows: the same filter again or a picture of the result, or the opposite one, for which
-// cells where nothing was found must change sides.
-enum class Next : std::uint8_t { kAny, kOpposite };
-
-// Kernel of equation (4): three rows of five and one cell above and below. `rect` in whole lanes;
-// reads two cells around it.
-template <class Filter, Next kNext, std::int32_t kSide>
-void apply_kernel(const FilterGrid<kSide>& in, FilterGrid<kSide>& out, const CellRect& rect) {
-  constexpr std::int32_t kStride = FilterGrid<kSide>::stride();
-  const auto five = [](const float* centre, Lanes middle) {
-    const Lanes left = Filter::combine(load_lanes(centre - 2), load_lanes(centre - 1));
-    const Lanes right = Filter::combine(load_lanes(centre + 1), load_lanes(centre + 2));
-    return Filter::combine(Filter::combine(left, right), middle);
-  };
-  for (std::int32_t x = rect.x_begin; x < rect.x_end; x += kLanes) {
-    const float* from = in.row(rect.y_begin - 2) + x;
-    float* to = out.row(rect.y_begin) + x;
-    // Centres of the five rows above each other, and the rows' fives.
-    Lanes top = load_lanes(from);
-    Lanes upper = load_lanes(from + kStride);
-    Lanes centre = load_lanes(from + 2 * kStride);
-    Lanes lower = load_lanes(from + 3 * kStride);
-    Lanes upper_five = five(from + kStride, upper);
-    Lanes centre_five = five(from + 2 * kStride, centre);
-    from += 3 * kStride;
-    for (std::int32_t y = rect.y_begin; y < rect.y_end; ++y) {
-      const Lanes lower_five = five(from, lower);
-      from += kStride;
-      const Lanes bottom = load_lanes(from);
-      const Lanes ends = Filter::combine(top, bottom);
-      const Lanes rows = Filter::combine(upper_five, Filter::combine(centre_five, lower_five));
-      Lanes result = Filter::combine(ends, rows);
-      if constexpr (kNext == Next::kOpposite) {
-        constexpr auto kSign = static_cast<std::int32_t>(0x80000000U);
-        result = from_bits(bits(result) ^ (Filter::found_nothing(result) & kSign));
-      }
-      store_lanes(result, to);
-      to += kStride;
-      top = upper;
-      upper = centre;
-      centre = lower;
-      lower = bottom;
-      upper_five = centre_five;
-      centre_five = lower_five;
-    }
+  template <class Numbers>
+  static Numbers combine(Numbers a, Numbers b) {
+    return larger(a, b);
   }
+};
+struct Sum {
+  template <class Numbers>
+  static Numbers combine(Numbers a, Numbers b) {
+    return sum(a, b);
+  }
+};
+
+// Kernel of equation (4): three rows of five and one cell above and below. Calls
+// store(x, y, lanes) for all of `rect`, two rows at a time; reads two cells around it.
+template <class Filter, class Number, std::int32_t kSide, class Store>
+void apply_kernel(const PaddedGrid<Number, kSide>& in, const CellRect& rect, Store&& store) {
+  using Numbers = typename LanesOf<Number>::Type;
+  constexpr std::int32_t kStride = PaddedGrid<Number, kSide>::stride();
+  const auto combine = [](Numbers a, Numbers b) { return Filter::combine(a, b); };
+  const auto five = [&combine](const Number* centre, Numbers middle) {
+    const Numbers left = combine(load_lanes(centre - 2), load_lanes(centre - 1));
+    const Numbers right = combine(load_lanes(centre + 1), load_lanes(centre + 2));
+    return combine(combine(left, right), middle);
+  };
+  for_lanes<16 / sizeof(Number), kSide>(rect, [&](std::int32_t x) {
+    const Number* from = in.row(rect.y_begin) + x;
+    // Centres of the rows y - 2 to y + 1 (a to d), and the fives of the rows y - 1 and y.
+    Numbers a = load_lanes(from - 2 * kStride);
+    Numbers b = load_lanes(from - kStride);
+    Numbers c = load_lanes(from);
+    Numbers d = load_lanes(from + kStride);
+    Numbers upper = five(from - kStride, b);
+    Numbers lower = five(from, c);
+    // Two rows; the new centres take the place of the first two.
+    const auto advance = [&](std::int32_t y, Numbers& first, Numbers& second, Numbers below) {
+      const Numbers next = five(from + kStride, below);
+      const Numbers both = combine(lower, next);
+      const Numbers centre = load_lanes(from + 2 * kStride);
+      store(x, y, combine(combine(upper, both), combine(first, centre)));
+      first = centre;
+      upper = next;
+      lower = five(from + 2 * kStride, centre);
+      const Numbers last = load_lanes(from + 3 * kStride);
+      store(x, y + 1, combine(combine(both, lower), combine(second, last)));
+      second = last;
+      from += 2 * kStride;
+    };
+    for (std::int32_t y = rect.y_begin; y < rect.y_end; y += 4) {
+      advance(y, a, b, d);
+      if (y + 2 >= rect.y_end) break;
+      advance(y + 2, c, d, b);
+    }
+  });
 }
 
-namespace detail {
-
-// Cell outside of the grid, as OpenCV's BORDER_REFLECT_101 does.
-template <std::int32_t kSide>
-constexpr std::int32_t reflect(std::int32_t i) {
-  if (i < 0) return -i;
-  return i < kSide ? i : 2 * kSide - 2 - i;
+// a + 2 b + c
+template <class Numbers>
+Numbers weighted(Numbers a, Numbers b, Numbers c) {
+  return sum(sum(a, c), sum(b, b));
 }
-
-template <std::int32_t kSide>
-float gradient_at(const FilterGrid<kSide>& in, std::int32_t x, std::int32_t y) {
-  const float* rows[3] = {in.row(reflect<kSide>(y - 1)), in.row(y), in.row(reflect<kSide>(y + 1))};
-  const std::int32_t left = reflect<kSide>(x - 1);
-  const std::int32_t right = reflect<kSide>(x + 1);
-  const auto across = [&](const float* row) { return row[right] - row[left]; };
-  const auto along = [&](const float* row) { return row[left] + row[right] + 2.0F * row[x]; };
-  const float gx = across(rows[0]) + across(rows[2]) + 2.0F * across(rows[1]);
-  const float gy = along(rows[2]) - along(rows[0]);
-  return std::max(gx < 0 ? -gx : gx, gy < 0 ? -gy : gy);
-}
-
-}  // namespace detail
 
 // Gradient map: the larger magnitude of the two Sobel gradients, equations (5) and (6). A plane of
 // slope s along x or y gives 8 s times the cell's side, a step of height h between two cells 4 h in
-// both. `rect` in whole lanes; reads one cell around it.
-template <std::int32_t kSide>
-void gradient(const FilterGrid<kSide>& in, FilterGrid<kSide>& out, const CellRect& rect) {
-  struct Row {
-    Lanes across;
-    Lanes along;
+// both. Beyond the grid the cells are mirrored, as by OpenCV's BORDER_REFLECT_101. Reads one cell
+// around `rect`.
+template <class Number, class Magnitude, std::int32_t kSide>
+void gradient(const PaddedGrid<Number, kSide>& in, PaddedGrid<Magnitude, kSide>& out,
+              const CellRect& rect) {
+  using Numbers = typename LanesOf<Number>::Type;
+  constexpr std::int32_t kStride = PaddedGrid<Number, kSide>::stride();
+  const auto mirrored = [&in](std::int32_t y) {
+    return in.row(y < 0 ? 1 : (y < kSide ? y : kSide - 2));
   };
-  const auto read = [&in](std::int32_t y, std::int32_t x) {
-    const float* row = in.row(detail::reflect<kSide>(y)) + x;
-    const Lanes left = load_lanes(row - 1);
-    const Lanes right = load_lanes(row + 1);
-    const Lanes middle = load_lanes(row);
-    return Row{right - left, left + right + (middle + middle)};
+  const auto across = [](const Number* row, Numbers left, Numbers right) {
+    return weighted(left, load_lanes(row), right);
   };
-  for (std::int32_t x = rect.x_begin; x < rect.x_end; x += kLanes) {
-    Row above = read(rect.y_begin - 1, x);
-    Row here = read(rect.y_begin, x);
-    for (std::int32_t y = rect.y_begin; y < rect.y_end; ++y) {
-      const Row below = read(y + 1, x);
-      const Lanes gx = above.across + below.across + (here.across + here.across);
-      const Lanes gy = below.along - above.along;
-      store_lanes(larger(magnitude(gx), magnitude(gy)), out.row(y) + x);
-      above = here;
-      here = below;
+  for_lanes<16 / sizeof(Number), kSide>(rect, [&](std::int32_t x) {
+    const Number* row = mirrored(rect.y_begin - 1) + x;
+    Numbers left = load_lanes(row - 1);
+    Numbers right = load_lanes(row + 1);
+    Numbers above = across(row, left, right);
+    row = in.row(rect.y_begin) + x;
+    // Sums of two rows: two of them make a column's 1 : 2 : 1.
+    Numbers left2 = sum(left, load_lanes(row - 1));
+    Numbers right2 = sum(right, load_lanes(row + 1));
+    left = load_lanes(row - 1);
+    right = load_lanes(row + 1);
+    Numbers here = across(row, left, right);
+    Magnitude* to = out.row(rect.y_begin) + x;
+    // One row, from the one below it; that takes the place of the one above.
+    const auto advance = [&](const Number* below, Numbers& across_above) {
+      const Numbers new_left = load_lanes(below - 1);
+      const Numbers new_right = load_lanes(below + 1);
+      const Numbers new_left2 = sum(left, new_left);
+      const Numbers new_right2 = sum(right, new_right);
+      const Numbers new_across = across(below, new_left, new_right);
+      store_lanes(larger(distance(sum(right2, new_right2), sum(left2, new_left2)),
+                         distance(new_across, across_above)),
+                  to);
+      across_above = new_across;
+      left = new_left;
+      right = new_right;
+      left2 = new_left2;
+      right2 = new_right2;
+      to += kStride;
+    };
+    for (std::int32_t y = rect.y_begin; y < rect.y_end; y += 2) {
+      row += kStride;
+      advance(row, above);
+      row = y + 2 < kSide ? row + kStride : mirrored(kSide) + x;
+      advance(row, here);
     }
-  }
-  // The margin is no mirror: the outermost columns again.
+  });
+  // The margin is no mirror: the outermost columns again. Along x they have no gradient.
   for (std::int32_t y = rect.y_begin; y < rect.y_end; ++y) {
-    if (rect.x_begin == 0) out.row(y)[0] = detail::gradient_at(in, 0, y);
-    if (rect.x_end == kSide) out.row(y)[kSide - 1] = detail::gradient_at(in, kSide - 1, y);
+    const Number* above = mirrored(y - 1);
+    const Number* below = mirrored(y + 1);
+    const auto along_y = [above, below](std::int32_t border, std::int32_t inner) {
+      const auto rise = below[border] - above[border] + (below[inner] - above[inner]);
+      return static_cast<Magnitude>(2 * (rise < 0 ? -rise : rise));
+    };
+    if (rect.x_begin == 0) out.row(y)[0] = along_y(0, 1);
+    if (rect.x_end == kSide) out.row(y)[kSide - 1] = along_y(kSide - 1, kSide - 2);
   }
+}
+
+// Four times the height of edges: the larger magnitude of the rises over four cells along x and
+// along y, each of three lines weighted as Sobel's. Reads two cells around `rect`.
+template <class Number, class Magnitude, std::int32_t kSide>
+void edges(const PaddedGrid<Number, kSide>& in, PaddedGrid<Magnitude, kSide>& out,
+           const CellRect& rect) {
+  using Numbers = typename LanesOf<Number>::Type;
+  constexpr std::int32_t kStride = PaddedGrid<Number, kSide>::stride();
+  const auto across = [](const Number* row) {
+    return weighted(load_lanes(row - 1), load_lanes(row), load_lanes(row + 1));
+  };
+  for_lanes<16 / sizeof(Number), kSide>(rect, [&](std::int32_t x) {
+    const Number* row = in.row(rect.y_begin) + x;
+    Magnitude* to = out.row(rect.y_begin) + x;
+    Numbers a = across(row - 2 * kStride);
+    Numbers b = across(row - kStride);
+    Numbers c = across(row);
+    Numbers d = across(row + kStride);
+    Numbers left = load_lanes(row - 2);
+    Numbers right = load_lanes(row + 2);
+    Numbers left2 = sum(load_lanes(row - kStride - 2), left);
+    Numbers right2 = sum(load_lanes(row - kStride + 2), right);
+    // One row; the one two below takes the place of the one two above.
+    const auto advance = [&](Numbers& above) {
+      row += kStride;
+      const Numbers new_left = load_lanes(row - 2);
+      const Numbers new_right = load_lanes(row + 2);
+      const Numbers new_left2 = sum(left, new_left);
+      const Numbers new_right2 = sum(right, new_right);
+      const Numbers below = across(row + kStride);
+      store_lanes(
+          larger(distance(sum(right2, new_right2), sum(left2, new_left2)), distance(below, above)),
+          to);
+      above = below;
+      left = new_left;
+      right = new_right;
+      left2 = new_left2;
+      right2 = new_right2;
+      to += kStride;
+    };
+    for (std::int32_t y = rect.y_begin; y < rect.y_end; y += 4) {
+      advance(a);
+      advance(b);
+      if (y + 2 >= rect.y_end) break;
+      advance(c);
+      advance(d);
+    }
+  });
 }
 
 }  // namespace surefoot::mapping

@@ -1,45 +1,114 @@
-// Four floats at a time, in the compiler's own vector notation: SSE2 and NEON, or four scalars
-// where there is neither. Only operations that give the same bits everywhere: +, -, comparison.
+// Sixteen bytes of numbers at a time, in the compiler's own vector notation: SSE2 and NEON, or
+// scalars where there is neither. Only operations that give the same bits everywhere; sums and
+// differences of whole numbers wrap around. Parts of numbers are taken as they lie in memory, the
+// lowest first, which holds for all targets.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <cstring>
 
 namespace surefoot::mapping {
 
+static_assert(std::endian::native == std::endian::little);
+
+// A comparison gives lanes of whole numbers of the same size, -1: true, 0: false.
 using Lanes = float __attribute__((vector_size(16)));
-using LaneMask = std::int32_t __attribute__((vector_size(16)));  // -1: true, 0: false
+using LaneMask = std::int32_t __attribute__((vector_size(16)));
+using ShortLanes = std::int16_t __attribute__((vector_size(16)));
+using UnsignedShortLanes = std::uint16_t __attribute__((vector_size(16)));
+using ByteLanes = std::int8_t __attribute__((vector_size(16)));
 
 inline constexpr std::int32_t kLanes = 4;
+inline constexpr std::int32_t kShortLanes = 8;
+inline constexpr std::int32_t kByteLanes = 16;
 
-inline Lanes load_lanes(const float* from) {
-  Lanes lanes;
+template <class Number>
+struct LanesOf {};
+template <>
+struct LanesOf<float> {
+  using Type = Lanes;
+};
+template <>
+struct LanesOf<std::int16_t> {
+  using Type = ShortLanes;
+};
+template <>
+struct LanesOf<std::uint16_t> {
+  using Type = UnsignedShortLanes;
+};
+template <>
+struct LanesOf<std::int8_t> {
+  using Type = ByteLanes;
+};
+
+template <class Number>
+typename LanesOf<Number>::Type load_lanes(const Number* from) {
+  typename LanesOf<Number>::Type lanes;
   std::memcpy(&lanes, from, sizeof(lanes));
   return lanes;
 }
-inline void store_lanes(Lanes lanes, float* to) { std::memcpy(to, &lanes, sizeof(lanes)); }
-inline LaneMask load_mask(const std::int32_t* from) {
-  LaneMask mask;
-  std::memcpy(&mask, from, sizeof(mask));
-  return mask;
+template <class Number>
+void store_lanes(typename LanesOf<Number>::Type lanes, Number* to) {
+  std::memcpy(to, &lanes, sizeof(lanes));
 }
-inline void store_mask(LaneMask mask, std::int32_t* to) { std::memcpy(to, &mask, sizeof(mask)); }
-inline Lanes all_lanes(float value) { return Lanes{value, value, value, value}; }
+inline Lanes all_lanes(float a) { return Lanes{a, a, a, a}; }
+inline ShortLanes all_lanes(std::int16_t a) { return ShortLanes{a, a, a, a, a, a, a, a}; }
+inline UnsignedShortLanes all_lanes(std::uint16_t a) {
+  return UnsignedShortLanes{a, a, a, a, a, a, a, a};
+}
+inline ByteLanes all_lanes(std::int8_t a) {
+  return ByteLanes{a, a, a, a, a, a, a, a, a, a, a, a, a, a, a, a};
+}
 
-inline LaneMask bits(Lanes lanes) {
-  LaneMask mask;
-  std::memcpy(&mask, &lanes, sizeof(mask));
-  return mask;
+template <class To, class From>
+To as_lanes(From lanes) {
+  static_assert(sizeof(To) == sizeof(From));
+  To result;
+  std::memcpy(&result, &lanes, sizeof(result));
+  return result;
 }
-inline Lanes from_bits(LaneMask mask) {
-  Lanes lanes;
-  std::memcpy(&lanes, &mask, sizeof(lanes));
-  return lanes;
-}
+inline LaneMask bits(Lanes lanes) { return as_lanes<LaneMask>(lanes); }
+inline Lanes from_bits(LaneMask mask) { return as_lanes<Lanes>(mask); }
 
 // As the scalar a < b ? a : b. No lane is NaN, and no lane is -0 (height_filter.h).
-inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
-inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
-inline Lanes magnitude(Lanes a) { return from_bits(bits(a) & 0x7FFFFFFF); }
+template <class Numbers>
+Numbers smaller(Numbers a, Numbers b) {
+  return a < b ? a : b;
+}
+template <class Numbers>
+Numbers larger(Numbers a, Numbers b) {
+  return a > b ? a : b;
+}
+
+inline Lanes sum(Lanes a, Lanes b) { return a + b; }
+inline ShortLanes sum(ShortLanes a, ShortLanes b) {
+  return as_lanes<ShortLanes>(as_lanes<UnsignedShortLanes>(a) + as_lanes<UnsignedShortLanes>(b));
+}
+inline ByteLanes sum(ByteLanes a, ByteLanes b) { return a + b; }
+inline Lanes difference(Lanes a, Lanes b) { return a - b; }
+inline ShortLanes difference(ShortLanes a, ShortLanes b) {
+  return as_lanes<ShortLanes>(as_lanes<UnsignedShortLanes>(a) - as_lanes<UnsignedShortLanes>(b));
+}
+// |a - b|, which fits always.
+inline Lanes distance(Lanes a, Lanes b) { return from_bits(bits(a - b) & 0x7FFFFFFF); }
+inline UnsignedShortLanes distance(ShortLanes a, ShortLanes b) {
+  return as_lanes<UnsignedShortLanes>(difference(larger(a, b), smaller(a, b)));
+}
+
+// The lower halves of all numbers.
+inline ShortLanes lower_halves(LaneMask first, LaneMask last) {
+  return __builtin_shufflevector(as_lanes<ShortLanes>(first), as_lanes<ShortLanes>(last), 0, 2, 4,
+                                 6, 8, 10, 12, 14);
+}
+inline ByteLanes lower_halves(ShortLanes first, ShortLanes last) {
+  return __builtin_shufflevector(as_lanes<ByteLanes>(first), as_lanes<ByteLanes>(last), 0, 2, 4, 6,
+                                 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+}
+// The first eight of sixteen masks, each twice as wide.
+inline ShortLanes first_masks(ByteLanes a) {
+  return as_lanes<ShortLanes>(
+      __builtin_shufflevector(a, a, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7));
+}
 
 }  // namespace surefoot::mapping

@@ -2,10 +2,13 @@
 // of edges, class, distance to the nearest cell that cannot bear a foot. Rules: README.md.
 #pragma once
 
-#include <cstddef>
+#include <algorithm>
 #include <cstdint>
 
+#include "core/base/assert.h"
+#include "core/mapping/class_layers.h"
 #include "core/mapping/height_filter.h"
+#include "core/mapping/height_scale.h"
 #include "core/mapping/traversability.h"
 
 namespace surefoot::mapping {
@@ -15,6 +18,7 @@ inline constexpr std::int32_t kFilterReach_cells = 12;
 
 // Keeps every layer, so that update() recomputes what a change can reach and nothing else. All
 // layers depend on the set cells alone: the result has the same bits as after computing all anew.
+// Heights are kept in steps where those can hold them, else in metres.
 template <std::int32_t kSide>
 class TraversabilityFilter {
  public:
@@ -25,162 +29,147 @@ class TraversabilityFilter {
     // is smaller by sqrt(2). No direction shall be steeper than the limit.
     constexpr double kDiagonal = 0.70710678118654752;
     max_gradient_m_ = static_cast<float>(8.0 * kDiagonal * limits.max_slope * cell_size_m);
-    low_.fill(Erosion::kNeutral);
-    high_.fill(Dilation::kNeutral);
-    hole_.fill(0);
-    eroded_.fill(Dilation::kNeutral);
-    opened_.fill(Dilation::kNeutral);
-    top_.fill(0);
-    covered_.fill(Erosion::kNeutral);
-    closed_.fill(0);
-    gradient_.fill(0);
-    holes_.fill(0);
-    class_.fill(0);
+    in_steps_.reset();
+    in_metres_.reset();
+    grids_.height_m.fill(kNowhere_m);
+    grids_.hole.fill(0);
+    grids_.usable.fill(0);
+    grids_.classes.fill(0);
+    grids_.steppable.fill(0);
     margin_.fill(0);
     for (std::int32_t y = 0; y < kSide; ++y) {
       for (std::int32_t x = 0; x < kSide; ++x) clear(x, y);
     }
-    update({0, kSide, 0, kSide});
+    uses_steps_ = true;
+    in_steps_.set_scale(StepScale(0));
+    update(whole());
   }
 
   void set(std::int32_t x, std::int32_t y, float height_m) {
-    const float height = on_filter_grid(height_m);
-    low_.row(y)[x] = height;
-    high_.row(y)[x] = height;
-    hole_.row(y)[x] = 0;
+    grids_.height_m.row(y)[x] = on_filter_grid(height_m);
+    grids_.hole.row(y)[x] = 0;
   }
   void clear(std::int32_t x, std::int32_t y) {
-    low_.row(y)[x] = Erosion::kNeutral;
-    high_.row(y)[x] = Dilation::kNeutral;
-    hole_.row(y)[x] = 1;
+    grids_.height_m.row(y)[x] = kNowhere_m;
+    grids_.hole.row(y)[x] = -1;
   }
 
   // To be called when the cells of `changed` were set or cleared, before anything is read.
   void update(const CellRect& changed) {
     if (changed.empty()) return;
-    const auto grown = [&changed](std::int32_t cells) { return changed.grown(cells, kSide); };
-    apply_kernel<Erosion, Next::kOpposite>(low_, eroded_, grown(2));
-    apply_kernel<Dilation, Next::kAny>(eroded_, opened_, grown(4));
-    apply_kernel<Dilation, Next::kAny>(high_, top_, grown(2));
-    apply_kernel<Sum, Next::kAny>(hole_, holes_, grown(2));
-    apply_kernel<Dilation, Next::kOpposite>(opened_, covered_, grown(6));
-    apply_kernel<Erosion, Next::kAny>(covered_, closed_, grown(8));
-    gradient(opened_, gradient_, grown(5));
-    classify(grown(10));
-    find_margins(grown(12));
+    const CellRect loaded = load(changed);
+    count_holes(loaded.grown(2, kSide));
+    if (uses_steps_) {
+      in_steps_.update(loaded, limits_, max_gradient_m_, grids_);
+    } else {
+      in_metres_.update(loaded, limits_, max_gradient_m_, grids_);
+    }
+    find_margins(loaded.grown(kFilterReach_cells, kSide));
   }
 
   Traversability traversability(std::int32_t x, std::int32_t y) const {
-    return static_cast<Traversability>(class_.row(y)[x]);
+    return static_cast<Traversability>(grids_.classes.row(y)[x]);
   }
   // 0 where no foot can be placed, else 1 .. kMaxMargin_cells.
   std::uint8_t margin_cells(std::int32_t x, std::int32_t y) const {
     return static_cast<std::uint8_t>(margin_.row(y)[x]);
   }
-  const FilterGrid<kSide>& opened() const { return opened_; }
-  const FilterGrid<kSide>& gradient_map() const { return gradient_; }
+  // Equation (4); -kNowhere_m where nothing is found.
+  float opened_m(std::int32_t x, std::int32_t y) const {
+    return uses_steps_ ? in_steps_.opened_m(x, y) : in_metres_.opened_m(x, y);
+  }
+  // Equations (5) and (6). Without meaning beside cells where nothing is found.
+  float gradient_m(std::int32_t x, std::int32_t y) const {
+    return uses_steps_ ? in_steps_.gradient_m(x, y) : in_metres_.gradient_m(x, y);
+  }
+  bool uses_steps() const { return uses_steps_; }
 
  private:
-  using ClassGrid = PaddedGrid<std::int32_t, kSide>;
+  using ByteGrid = PaddedGrid<std::int8_t, kSide>;
+  static constexpr CellRect whole() { return {0, kSide, 0, kSide}; }
 
-  // What one row contributes to the edges of its neighbours: differences over four cells and sums
-  // over three, weighted as Sobel's.
-  struct Row {
-    Lanes across;
-    Lanes along;
-  };
-  Row read(std::int32_t x, std::int32_t y) const {
-    const float* row = closed_.row(y) + x;
-    const Lanes middle = load_lanes(row);
-    return {load_lanes(row + 2) - load_lanes(row - 2),
-            load_lanes(row - 1) + load_lanes(row + 1) + (middle + middle)};
-  }
-
-  void classify(const CellRect& rect) {
-    for (std::int32_t x = rect.x_begin; x < rect.x_end; x += kLanes) {
-      Row rows[5] = {read(x, rect.y_begin - 2),
-                     read(x, rect.y_begin - 1),
-                     read(x, rect.y_begin),
-                     read(x, rect.y_begin + 1),
-                     {}};
-      for (std::int32_t y = rect.y_begin; y < rect.y_end; ++y) {
-        rows[4] = read(x, y + 2);
-        const Lanes across = rows[1].across + rows[3].across + (rows[2].across + rows[2].across);
-        const Lanes edge_x4 = larger(magnitude(across), magnitude(rows[4].along - rows[0].along));
-        classify_lanes(x, y, edge_x4);
-        rows[0] = rows[1];
-        rows[1] = rows[2];
-        rows[2] = rows[3];
-        rows[3] = rows[4];
-      }
+  // What must be computed anew: the changed cells, or all where heights are kept in another way
+  // from now on.
+  CellRect load(const CellRect& changed) {
+    const CellRect rect = changed.grown(0, kSide);
+    if (uses_steps_ && in_steps_.load(grids_, rect)) return changed;
+    const auto [lowest_m, highest_m] = find_span();
+    const bool used_steps = uses_steps_;
+    uses_steps_ = StepScale::can_hold(lowest_m, highest_m);
+    if (uses_steps_) {
+      in_steps_.set_scale(StepScale(on_filter_grid(0.5F * (lowest_m + highest_m))));
+      SUREFOOT_ASSERT(in_steps_.load(grids_, whole()));
+      return whole();
     }
+    (void)in_metres_.load(grids_, used_steps ? whole() : rect);
+    return used_steps ? whole() : changed;
+  }
+  struct Span {
+    float lowest_m;
+    float highest_m;
+  };
+  // Of all heights; 0 and 0 where there is none.
+  Span find_span() const {
+    Lanes lowest = all_lanes(kNowhere_m);
+    Lanes highest = all_lanes(-kNowhere_m);
+    for (std::int32_t y = 0; y < kSide; ++y) {
+      for_lanes<kLanes, kSide>(whole(), [&](std::int32_t x) {
+        const MetreScale::Heights heights =
+            MetreScale::read(grids_.height_m.row(y) + x, grids_.hole.row(y) + x);
+        lowest = smaller(lowest, heights.low);
+        highest = larger(highest, heights.high);
+      });
+    }
+    Span span{lowest[0], highest[0]};
+    for (int i = 1; i < kLanes; ++i) {
+      span = {std::min(span.lowest_m, lowest[i]), std::max(span.highest_m, highest[i])};
+    }
+    return span.lowest_m <= span.highest_m ? span : Span{0, 0};
   }
 
-  void classify_lanes(std::int32_t x, std::int32_t y, Lanes edge_x4) {
-    const auto limit = [](double value) { return all_lanes(static_cast<float>(value)); };
-    const Lanes height = load_lanes(low_.row(y) + x);
-    const LaneMask known = load_lanes(hole_.row(y) + x) < all_lanes(0.5F);
-    const LaneMask enough = load_lanes(holes_.row(y) + x) <= limit(limits_.max_unknown);
-    const LaneMask fits = (load_lanes(top_.row(y) + x) - height <= limit(limits_.max_raise_m)) &
-                          (height - load_lanes(eroded_.row(y) + x) <= limit(limits_.max_drop_m)) &
-                          (load_lanes(gradient_.row(y) + x) <= all_lanes(max_gradient_m_));
-    constexpr auto kUnsteppable = static_cast<std::int32_t>(Traversability::kUnsteppable);
-    constexpr auto kSteppable = static_cast<std::int32_t>(Traversability::kSteppable);
-    // A comparison that holds is -1: each limit that the edge exceeds is one class more.
-    const LaneMask barred = kUnsteppable - (edge_x4 > limit(4.0 * limits_.max_step_m)) -
-                            (edge_x4 > limit(4.0 * limits_.max_jump_m));
-    const LaneMask known_class = (fits & kSteppable) | (~fits & barred);
-    store_mask(known_class & known & enough, class_.row(y) + x);
+  void count_holes(const CellRect& rect) {
+    const auto least = all_lanes(static_cast<std::int8_t>(-limits_.max_unknown));
+    apply_kernel<Sum>(grids_.hole, rect, [&](std::int32_t x, std::int32_t y, ByteLanes holes) {
+      const ByteLanes hole = load_lanes(grids_.hole.row(y) + x);
+      store_lanes(~hole & (holes >= least), grids_.usable.row(y) + x);
+    });
   }
 
   void find_margins(const CellRect& rect) {
-    constexpr auto kSteppable = static_cast<std::int32_t>(Traversability::kSteppable);
     struct Line {
-      LaneMask three;
-      LaneMask five;
+      ByteLanes three;
+      ByteLanes five;
     };
     const auto read_line = [this](std::int32_t x, std::int32_t y) {
-      const std::int32_t* row = class_.row(y) + x;
-      const LaneMask three = (load_mask(row - 1) == kSteppable) & (load_mask(row) == kSteppable) &
-                             (load_mask(row + 1) == kSteppable);
-      return Line{three,
-                  three & (load_mask(row - 2) == kSteppable) & (load_mask(row + 2) == kSteppable)};
+      const std::int8_t* row = grids_.steppable.row(y) + x;
+      const ByteLanes three = load_lanes(row - 1) & load_lanes(row) & load_lanes(row + 1);
+      return Line{three, three & load_lanes(row - 2) & load_lanes(row + 2)};
     };
-    for (std::int32_t x = rect.x_begin; x < rect.x_end; x += kLanes) {
-      Line lines[5] = {read_line(x, rect.y_begin - 2),
-                       read_line(x, rect.y_begin - 1),
-                       read_line(x, rect.y_begin),
-                       read_line(x, rect.y_begin + 1),
-                       {}};
+    for_lanes<kByteLanes, kSide>(rect, [&](std::int32_t x) {
+      Line lines[4] = {read_line(x, rect.y_begin - 2), read_line(x, rect.y_begin - 1),
+                       read_line(x, rect.y_begin), read_line(x, rect.y_begin + 1)};
       for (std::int32_t y = rect.y_begin; y < rect.y_end; ++y) {
-        lines[4] = read_line(x, y + 2);
-        const LaneMask ring1 = lines[1].three & lines[2].three & lines[3].three;
-        const LaneMask ring2 =
-            lines[0].five & lines[1].five & lines[2].five & lines[3].five & lines[4].five;
-        const LaneMask own = load_mask(class_.row(y) + x) == kSteppable;
-        store_mask(own & (1 - ring1 - ring2), margin_.row(y) + x);
+        const Line last = read_line(x, y + 2);
+        const ByteLanes ring1 = lines[1].three & lines[2].three & lines[3].three;
+        const ByteLanes ring2 =
+            lines[0].five & lines[1].five & lines[2].five & lines[3].five & last.five;
+        const ByteLanes own = load_lanes(grids_.steppable.row(y) + x);
+        store_lanes(own & (1 - ring1 - ring2), margin_.row(y) + x);
         lines[0] = lines[1];
         lines[1] = lines[2];
         lines[2] = lines[3];
-        lines[3] = lines[4];
+        lines[3] = last;
       }
-    }
+    });
   }
 
   TraversabilityLimits limits_;
   float max_gradient_m_ = 0;
-  FilterGrid<kSide> low_;       // heights; +kNowhere_m where there is none
-  FilterGrid<kSide> high_;      // heights; -kNowhere_m where there is none
-  FilterGrid<kSide> hole_;      // 1: no height
-  FilterGrid<kSide> eroded_;    // lowest of the patch
-  FilterGrid<kSide> opened_;    // equation (4)
-  FilterGrid<kSide> top_;       // highest of the patch
-  FilterGrid<kSide> holes_;     // cells of the patch without height
-  FilterGrid<kSide> covered_;   // dilation of opened_
-  FilterGrid<kSide> closed_;    // closing of opened_
-  FilterGrid<kSide> gradient_;  // equations (5), (6)
-  ClassGrid class_;
-  ClassGrid margin_;
+  bool uses_steps_ = true;
+  ClassGrids<kSide> grids_;
+  ClassLayers<StepScale, kSide> in_steps_;
+  ClassLayers<MetreScale, kSide> in_metres_;  // up to date while !uses_steps_
+  ByteGrid margin_;
 };
 
 }  // namespace surefoot::mapping

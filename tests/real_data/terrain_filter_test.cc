@@ -61,9 +61,9 @@ TEST(RealGround, TheFilterHasOpenCvsBitsOnEveryScan) {
     for (std::int32_t y = 0; y < kSide; ++y) {
       for (std::int32_t x = 0; x < kSide; ++x) {
         if (opened.at<float>(y, x) == -oracle::kNothing) continue;
-        ASSERT_EQ(filter->opened().row(y)[x], opened.at<float>(y, x)) << name << x << ' ' << y;
+        ASSERT_EQ(filter->opened_m(x, y), opened.at<float>(y, x)) << name << x << ' ' << y;
         if (all_around.at<std::uint8_t>(y, x) == 0) continue;
-        ASSERT_EQ(filter->gradient_map().row(y)[x], gradient.at<float>(y, x));
+        ASSERT_EQ(filter->gradient_m(x, y), gradient.at<float>(y, x));
         ++compared;
       }
     }
