@@ -141,7 +141,11 @@ void Cloud::make_surfel(int level, std::size_t cell) {
   surfel.normal = fit.normal;
   surfel.position_m = means_m_[cell] - fit.normal * fit.normal.dot(means_m_[cell] - plane_m);
   surfel.variance_m2 = fit.across_m2 / (points - kPlaneUnknowns);
-  surfel.tilt_variance_rad2 = 0.5 * surfel.variance_m2 * (1.0 / fit.narrow_m2 + 1.0 / fit.wide_m2);
+  // To first order a sampled normal turns towards the axis of lambda by lambda0 lambda /
+  // (N (lambda - lambda0)^2), mean square.
+  surfel.tilt_variance_rad2 = 0.5 * surfel.variance_m2 *
+                              (fit.narrow_m2 / math::square(fit.narrow_m2 - fit.across_m2) +
+                               fit.wide_m2 / math::square(fit.wide_m2 - fit.across_m2));
   surfel.overlap = points / own.moments.count;
 }
 

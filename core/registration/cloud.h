@@ -57,7 +57,7 @@ class Cloud {
   // Empties the cloud. kInvalid: cell_m is not above 0 or not finite; nothing changed.
   Status reset(double cell_m);
 
-  // Adds a point; after finish() a programmer's error. kInvalid: not finite. kOutOfRange: beyond kMaxCellIndex cells.
+  // Not after finish(). kInvalid: not finite. kOutOfRange: beyond kMaxCellIndex cells.
   // kExhausted: it needs a cell and there is none left. The cloud is unchanged then, but for
   // dropped_points(). Points of the same cells may come in any number.
   Status add(const Vector3& p_m);

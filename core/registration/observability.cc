@@ -1,5 +1,9 @@
 #include "core/registration/observability.h"
 
+#include <cstddef>
+
+#include <Eigen/Cholesky>
+
 #include "core/math/elementary.h"
 
 namespace surefoot::registration {
@@ -75,6 +79,7 @@ Observed observed_part(const NormalEquations& equations, double min_information_
   const Eigen6 eigen = eigen_decomposition(equations.information);
   const double rounding = kRounding * eigen.values[5];
   Observed out;
+  out.axes = eigen.vectors;
   for (int i = 0; i < 6; ++i) {
     const Vector6 axis = eigen.vectors.col(i);
     const double feigned = axis.dot(Vector6(equations.feigned * axis));
@@ -84,10 +89,34 @@ Observed observed_part(const NormalEquations& equations, double min_information_
       out.information += value * axis * axis.transpose();
       out.gradient += axis.dot(equations.gradient) * axis;
     } else {
-      out.unobserved += axis * axis.transpose();
+      out.open[static_cast<std::size_t>(i)] = true;
     }
   }
   return out;
+}
+
+bool invert(const Matrix6& matrix, Matrix6& out) {
+  const Eigen::LLT<Matrix6> cholesky(matrix);
+  if (cholesky.info() != Eigen::Success) return false;
+  // Column by column: Eigen's solver for many right-hand sides would allocate.
+  for (int k = 0; k < 6; ++k) out.col(k) = cholesky.solve(Vector6(Vector6::Unit(k)));
+  return true;
+}
+
+Matrix6 open_information(const Matrix6& covariance, const Observed& observed) {
+  Matrix6 marginal = observed.axes.transpose() * Matrix6(covariance * observed.axes);
+  const auto is_open = [&observed](int i) { return observed.open[static_cast<std::size_t>(i)]; };
+  for (int i = 0; i < 6; ++i) {
+    for (int k = 0; k < 6; ++k) {
+      if (!is_open(i) || !is_open(k)) marginal(i, k) = i == k ? 1.0 : 0.0;
+    }
+  }
+  Matrix6 inverse = Matrix6::Zero();
+  if (!invert(marginal, inverse)) return Matrix6::Zero();
+  for (int i = 0; i < 6; ++i) {
+    if (!is_open(i)) inverse(i, i) = 0.0;
+  }
+  return observed.axes * Matrix6(inverse * observed.axes.transpose());
 }
 
 }  // namespace surefoot::registration

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
-
 #include "core/base/assert.h"
 #include "core/geometry/rotations.h"
 #include "core/math/elementary.h"
@@ -19,6 +17,8 @@ constexpr double kConvergedCoarse_cells = 2e-2;
 // Share of the cells that must have a surfel; where fewer have, the points are too few for cells of
 // this size and the next wider ones are the finest used.
 constexpr double kMinSurfels = 0.4;
+// The threshold of observability is higher by this over the root of the number of pairs.
+constexpr double kRatioNoise = 4.0;
 // How far partners may lie apart, in cells of the level.
 constexpr double kReach_cells = 1.0;
 // Median of |x| of a normal distribution, inverted.
@@ -158,30 +158,58 @@ void Aligner::weigh() {
   residual_m_ = math::sqrt(scale2 * static_cast<double>(pair_count_) / inverse);
 }
 
+// In directions that this level does not observe, a wider one may have: what it gained on the prior
+// there is kept, as a marginal, so that what it knows of other directions does not leak in.
+void Aligner::keep_wider(const Prior& prior, const Matrix6& to_centre, Observed& observed) const {
+  const Matrix6 prior_covariance = prior_information(prior).cwiseInverse().asDiagonal();
+  const auto at_centre = [&to_centre](const Matrix6& covariance) {
+    return Matrix6(to_centre * Matrix6(covariance * to_centre.transpose()));
+  };
+  const Matrix6 gain = open_information(at_centre(wider_covariance_), observed) -
+                       open_information(at_centre(prior_covariance), observed);
+  const Vector6 back = to_centre * motion(X_TS_, wider_X_TS_);
+  observed.information += overlap_factor_ * gain;
+  observed.gradient += overlap_factor_ * Vector6(gain * back);
+}
+
 bool Aligner::solve(const Prior& prior, Registration& out) {
   const NormalEquations equations = sum_up(pairs_.data(), weights_.data(), pair_count_);
-  const Observed observed = observed_part(equations, config_.min_information_ratio);
+  // The feigned information is itself known from so many pairs only.
+  const double surplus = 1.0 + kRatioNoise / math::sqrt(static_cast<double>(pair_count_));
+  Observed observed = observed_part(equations, surplus * config_.min_information_ratio);
   // From motions of S to those of the points' centre, which the equations are about.
   Matrix6 to_centre = Matrix6::Identity();
   to_centre.topRightCorner<3, 3>() = -geometry::cross_matrix(equations.centre_m - X_TS_.origin.m);
   to_centre.bottomRightCorner<3, 3>() *= equations.lever_m;
-  const Matrix6 half = observed.information * to_centre;
+  if (observed.directions < 6) keep_wider(prior, to_centre, observed);
   // A point that is in several surfels must not count several times against the prior.
+  const Matrix6 half = observed.information * to_centre;
   Matrix6 information = to_centre.transpose() * half / overlap_factor_;
   Vector6 gradient = to_centre.transpose() * observed.gradient / overlap_factor_;
   const Vector6 prior_diagonal = prior_information(prior);
   information.diagonal() += prior_diagonal;
   gradient += prior_diagonal.cwiseProduct(motion(X_TS_, prior.X_TS));
-  const Eigen::LLT<Matrix6> cholesky(information);
-  if (cholesky.info() != Eigen::Success) return false;
-  const Vector6 u = cholesky.solve(gradient);
+  if (!invert(information, out.covariance)) return false;
+  const Vector6 u = out.covariance * gradient;
   X_TS_ = moved(X_TS_, u);
   moved_m_ = math::sqrt(Vector6(to_centre * u).squaredNorm());
-  // Column by column: Eigen's solver for many right-hand sides would allocate.
-  for (int k = 0; k < 6; ++k) out.covariance.col(k) = cholesky.solve(Vector6(Vector6::Unit(k)));
-  out.unobserved = observed.unobserved;
-  out.observed_directions = observed.directions;
   return true;
+}
+
+// A direction is open when its variance is not even half of the prior's.
+void Aligner::report_open_directions(const Prior& prior, Registration& out) const {
+  const Vector6 per_sigma = prior_information(prior).cwiseSqrt();
+  const Matrix6 scaled = per_sigma.asDiagonal() * Matrix6(out.covariance * per_sigma.asDiagonal());
+  const Eigen6 eigen = eigen_decomposition(scaled);
+  out.observed_directions = 0;
+  out.unobserved.setZero();
+  for (int i = 0; i < 6; ++i) {
+    if (eigen.values[i] < 0.5) {
+      ++out.observed_directions;
+    } else {
+      out.unobserved += eigen.vectors.col(i) * eigen.vectors.col(i).transpose();
+    }
+  }
 }
 
 bool Aligner::step(Cloud& source, Cloud& target, int level, const Prior& prior, Registration& out) {
@@ -211,6 +239,9 @@ Status Aligner::run_level(Cloud& source, Cloud& target, int level, const Prior& 
     if (!step(source, target, level, prior, out)) return Status::kNotFound;
     out.converged = moved_m_ < converged_m;
   }
+  wider_covariance_ = out.covariance;
+  wider_X_TS_ = X_TS_;
+  report_open_directions(prior, out);
   return Status::kOk;
 }
 
@@ -234,6 +265,8 @@ Status Aligner::align(Cloud& source, Cloud& target, const Prior& prior, Registra
   }
   out = Registration{};
   out.level = finest_level(source);
+  wider_covariance_ = prior_information(prior).cwiseInverse().asDiagonal();
+  wider_X_TS_ = prior.X_TS;
   X_TS_ = prior.X_TS;
   // A wider level without enough partners leaves the pose where it is; the finest one decides.
   Status status = Status::kUnavailable;

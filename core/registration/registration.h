@@ -9,6 +9,7 @@
 #include "core/geometry/frames.h"
 #include "core/registration/cloud.h"
 #include "core/registration/normal_equations.h"
+#include "core/registration/observability.h"
 #include "core/registration/registration_config.h"
 
 namespace surefoot::registration {
@@ -31,8 +32,8 @@ struct Registration {
   // Of (displacement of S's origin [m], small rotation [rad]), both in T's axes. Directions that
   // the clouds do not tell about have the prior's variance.
   Matrix6 covariance = Matrix6::Zero();
-  // Projects a motion (displacement of the cloud's centre, rotation times the cloud's size) onto
-  // what is not observed; zero when all is.
+  // Projects a motion of S, displacement and rotation each in units of the prior's sigma, onto what
+  // is not observed: there half of the prior's variance or more is left. Zero: all is observed.
   Matrix6 unobserved = Matrix6::Zero();
   std::int32_t observed_directions = 0;  // 6: all; fewer: the prior was kept in the others
   std::int32_t level = kLevels;          // finest used
@@ -66,6 +67,9 @@ class Aligner {
   std::size_t choose_surfels(Cloud& source, int level);
   void find_pairs(Cloud& source, Cloud& target, int level);
   void weigh();
+  // Adds what wider levels found in the directions that this one does not observe.
+  void keep_wider(const Prior& prior, const Matrix6& to_centre, Observed& observed) const;
+  void report_open_directions(const Prior& prior, Registration& out) const;
   // Moves X_TS_. False: the equations have no solution.
   bool solve(const Prior& prior, Registration& out);
   bool step(Cloud& source, Cloud& target, int level, const Prior& prior, Registration& out);
@@ -75,6 +79,8 @@ class Aligner {
   RegistrationConfig config_;
   double min_normal_cosine_ = 0.7;
   SourcePose X_TS_;
+  Matrix6 wider_covariance_ = Matrix6::Zero();  // of the level before; first, the prior's
+  SourcePose wider_X_TS_;
   std::size_t chosen_count_ = 0;
   std::size_t pair_count_ = 0;
   double overlap_factor_ = 1;

@@ -13,10 +13,10 @@ inline constexpr int kMaxIterations = 64;  // of one level
 inline constexpr std::int32_t kMaxPairs = 4096;
 
 struct RegistrationConfig {
-  double cell_m = 0.03;  // finest cells, of both clouds
+  double cell_m = 0.025;  // finest cells, of both clouds
   // Steps of each level at most, finest first. 0 leaves the level out.
   std::array<std::int32_t, kLevels> max_iterations{8, 10, 15, 15};
-  std::int32_t max_pairs = 3000;      // source surfels used per step, taken evenly
+  std::int32_t max_pairs = 2500;      // source surfels used per step, taken evenly
   std::int32_t min_pairs = 30;        // fewer: kNotFound
   double min_overlap = 0.15;          // share of the source surfels with a partner; less: kNotFound
   double max_normal_angle_rad = 0.8;  // between partners

@@ -11,7 +11,7 @@ RockyBoard::RockyBoard(std::uint64_t seed, const BoardOptions& options) : option
     Feature feature;
     feature.x_m = random.uniform(-0.5 * options.side_m, 0.5 * options.side_m + options.shift_m);
     feature.y_m = random.uniform(-0.5 * options.side_m, 0.5 * options.side_m);
-    feature.radius_m = random.uniform(0.03, 0.12);
+    feature.radius_m = random.uniform(options.min_radius_m, options.max_radius_m);
     feature.height_m = random.uniform(0.2, 1.0) * options.max_height_m;
     feature.step = options.steps > 0 && i % options.steps == 0;
     features_.push_back(feature);

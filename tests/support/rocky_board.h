@@ -17,6 +17,8 @@ struct BoardOptions {
   int features = 60;       // bumps and steps
   int steps = 2;           // every so many-th is a step: 0 none, 1 all
   double max_height_m = 0.08;
+  double min_radius_m = 0.03;  // half the side of a step; two sigma of a bump
+  double max_radius_m = 0.12;
   bool vertical_noise_only = false;
 };
 

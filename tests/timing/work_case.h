@@ -34,6 +34,7 @@ extern const WorkEntry kControlCases[];
 extern const WorkEntry kModuleCases[];
 extern const WorkEntry kMpcCases[];
 extern const WorkEntry kMappingCases[];
+extern const WorkEntry kRegistrationCases[];
 extern const WorkEntry kExecutiveCases[];
 extern const WorkEntry kDynamicsCases[];
 extern const WorkEntry kJumpCases[];

@@ -20,6 +20,7 @@ constexpr Workload kWorkloads[] = {
     {"actuation", surefoot::tests::hash_actuation},
     {"attitude", surefoot::tests::hash_attitude},
     {"tracking", surefoot::tests::hash_tracking},
+    {"registration", surefoot::tests::hash_registration},
     {"mapping", surefoot::tests::hash_mapping},
     {"swing", surefoot::tests::hash_swing},
     {"convex_mpc", surefoot::tests::hash_convex_mpc},

@@ -89,10 +89,10 @@ TEST_P(Degenerate, CorridorLeavesItsLengthOpen) {
     ASSERT_EQ(run(corridor_point, seed, {0.006, -0.004, 0.005}), Status::kOk);
     const Registration& result = bench_.result;
     EXPECT_EQ(result.observed_directions, 5);
-    EXPECT_NEAR(result.X_TS.origin.m.x(), 0.0, 5e-4);
-    EXPECT_NEAR(result.X_TS.origin.m.y(), 0.004, 1e-3);
-    EXPECT_NEAR(result.X_TS.origin.m.z(), -0.005, 1e-3);
-    EXPECT_NEAR(result.covariance(0, 0), math::square(kPrior.sigma_m), 1e-4);
+    EXPECT_NEAR(result.X_TS.origin.m.x(), 0.0, 2e-3);
+    EXPECT_NEAR(result.X_TS.origin.m.y(), 0.004, 2e-3);
+    EXPECT_NEAR(result.X_TS.origin.m.z(), -0.005, 2e-3);
+    EXPECT_GT(result.covariance(0, 0), 0.5 * math::square(kPrior.sigma_m));
     EXPECT_LT(result.covariance(1, 1), math::square(0.005));
   }
 }
@@ -102,12 +102,12 @@ TEST_P(Degenerate, CornerTellsAll) {
     ASSERT_EQ(run(corner_point, seed, {0.006, -0.004, 0.005}), Status::kOk);
     const Registration& result = bench_.result;
     EXPECT_EQ(result.observed_directions, 6);
-    EXPECT_LT((result.X_TS.origin.m - Vector3(-0.006, 0.004, -0.005)).norm(), 2e-3);
+    EXPECT_LT((result.X_TS.origin.m - Vector3(-0.006, 0.004, -0.005)).norm(), 3e-3);
     EXPECT_EQ(result.unobserved.norm(), 0.0);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Noise, Degenerate, ::testing::Values(0.0, 0.001, 0.003));
+INSTANTIATE_TEST_SUITE_P(Noise, Degenerate, ::testing::Values(0.0, 0.001, 0.003, 0.006));
 
 }  // namespace
 }  // namespace surefoot::registration

@@ -115,10 +115,30 @@ TEST(Observability, SplitsWhatNoiseCouldFeign) {
   Vector6 kept;
   kept << 1, 2, 0, 4, 5, 0;
   EXPECT_LT((observed.gradient - kept).norm(), 1e-12);
-  EXPECT_NEAR(observed.unobserved(2, 2), 1.0, 1e-12);
-  EXPECT_NEAR(observed.unobserved(5, 5), 1.0, 1e-12);
-  EXPECT_NEAR(observed.unobserved.trace(), 2.0, 1e-12);
+  int open = 0;
+  for (std::size_t k = 0; k < 6; ++k) open += observed.open[k] ? 1 : 0;
+  EXPECT_EQ(open, 2);
   EXPECT_EQ(observed.information(2, 2), 0.0);
+}
+
+// What is known of height must not leak into a slightly turned open axis.
+TEST(Observability, OpenInformationIsTheMarginal) {
+  Matrix6 covariance = Matrix6::Identity();
+  covariance(0, 0) = 4.0;
+  covariance(2, 2) = 1e-6;
+  Observed observed;
+  observed.axes = Matrix6::Identity();
+  observed.axes.topLeftCorner<3, 3>() = geometry::from_roll_pitch_yaw(0, 0.05, 0);
+  observed.open[0] = true;
+  observed.directions = 5;
+  const Matrix6 information = open_information(covariance, observed);
+  const Vector6 axis = observed.axes.col(0);
+  EXPECT_NEAR(axis.dot(information * axis), 1.0 / axis.dot(covariance * axis), 1e-9);
+  EXPECT_NEAR(information.trace(), axis.dot(information * axis), 1e-9);
+  Matrix6 inverse;
+  ASSERT_TRUE(invert(covariance, inverse));
+  EXPECT_LT((inverse * covariance - Matrix6::Identity()).norm(), 1e-9);
+  EXPECT_FALSE(invert(-covariance, inverse));
 }
 
 }  // namespace
