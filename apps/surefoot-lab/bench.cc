@@ -14,6 +14,7 @@
 #include "apps/common/run.h"
 #include "apps/surefoot-lab/bench_mapping.h"
 #include "apps/surefoot-lab/bench_mpc.h"
+#include "apps/surefoot-lab/eval_registration.h"
 
 namespace surefoot::apps {
 namespace {
@@ -66,15 +67,19 @@ int bench_pictures() {
 }  // namespace
 
 int bench(const std::string& name, Stack& stack) {
-  if (!name.empty() && name != "run" && name != "pictures" && name != "mapping" && name != "mpc") {
+  if (!name.empty() && name != "run" && name != "pictures" && name != "mapping" && name != "mpc" &&
+      name != "registration") {
     std::fputs(
-        fmt::format("bench: '{}' is unknown; there are: run pictures mapping mpc\n", name).c_str(),
+        fmt::format("bench: '{}' is unknown; there are: run pictures mapping mpc registration\n",
+                    name)
+            .c_str(),
         stderr);
     return 2;
   }
   int worst = 0;
   if (name.empty() || name == "pictures") bench_pictures();
   if (name.empty() || name == "mapping") worst = bench_mapping();
+  if (name.empty() || name == "registration") worst = std::max(worst, bench_registration());
   if (name.empty() || name == "mpc") worst = std::max(worst, bench_mpc());
   if (name.empty() || name == "run") worst = std::max(worst, bench_run(stack));
   return worst;

@@ -8,6 +8,7 @@
 #include "apps/common/version.h"
 #include "apps/surefoot-lab/bench.h"
 #include "apps/surefoot-lab/campaign.h"
+#include "apps/surefoot-lab/eval_registration.h"
 #include "apps/surefoot-lab/eval_traversability.h"
 #include "apps/surefoot-lab/export.h"
 #include "apps/surefoot-lab/jump/motion_command.h"
@@ -24,6 +25,12 @@ struct Arguments {
   std::filesystem::path out;
   MotionOptions motion;
   TraversabilityOptions traversability;
+  RegistrationOptions registration;
+};
+
+struct EvalCommands {
+  CLI::App* traversability = nullptr;
+  CLI::App* registration = nullptr;
 };
 
 CLI::App* add_campaign(CLI::App& app, Arguments& arguments) {
@@ -47,7 +54,23 @@ CLI::App* add_campaign(CLI::App& app, Arguments& arguments) {
   return command;
 }
 
-CLI::App* add_eval(CLI::App& app, Arguments& arguments) {
+CLI::App* add_eval_registration(CLI::App& eval, Arguments& arguments) {
+  CLI::App* command = eval.add_subcommand(
+      "registration", "alignment of synthetic rocky boards; JSON and a picture");
+  RegistrationOptions& options = arguments.registration;
+  arguments.seeds = "1..10";
+  command->add_option("--seeds", arguments.seeds, "A..B, both included")->capture_default_str();
+  command->add_option("--points", options.points, "of each scan")
+      ->check(CLI::Range(100, 200000))
+      ->capture_default_str();
+  command->add_option("--slope", options.slope, "of the board")
+      ->check(CLI::Range(-1.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--out", options.out, "folder for the results");
+  return command;
+}
+
+EvalCommands add_eval(CLI::App& app, Arguments& arguments) {
   CLI::App* command = app.add_subcommand("eval", "experiments on data");
   command->require_subcommand(1);
   CLI::App* classes = command->add_subcommand(
@@ -59,7 +82,7 @@ CLI::App* add_eval(CLI::App& app, Arguments& arguments) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   classes->add_option("--out", options.out, "folder for the results");
-  return classes;
+  return {classes, add_eval_registration(*command, arguments)};
 }
 
 int run_campaign(Arguments& arguments) {
@@ -73,15 +96,27 @@ int run_campaign(Arguments& arguments) {
   return campaign(arguments.campaign);
 }
 
+int run_eval_registration(Arguments& arguments) {
+  const auto seeds = parse_seeds(arguments.seeds);
+  if (!seeds) {
+    std::fputs(fmt::format("--seeds: '{}' is not A..B\n", arguments.seeds).c_str(), stderr);
+    return 2;
+  }
+  arguments.registration.first_seed = seeds->first;
+  arguments.registration.last_seed = seeds->last;
+  return eval_registration(arguments.registration);
+}
+
 int dispatch(int argc, char** argv, Stack& stack) {
   CLI::App app("Campaigns, benchmarks and conversions. Manual: docs/running.md");
   app.require_subcommand(1);
   app.set_version_flag("--version", version_text());
   Arguments arguments;
   CLI::App* campaign_command = add_campaign(app, arguments);
-  CLI::App* bench_command = app.add_subcommand("bench", "benchmarks: run, pictures, mapping, mpc");
+  CLI::App* bench_command =
+      app.add_subcommand("bench", "benchmarks: run, pictures, mapping, registration, mpc");
   bench_command->add_option("NAME", arguments.bench_name, "one of them; all when left out");
-  CLI::App* traversability_command = add_eval(app, arguments);
+  const EvalCommands eval = add_eval(app, arguments);
   CLI::App* export_command = app.add_subcommand("export", "converts a record");
   export_command->add_option("RECORD", arguments.input, "record.mcap")->required();
   export_command->add_option("--to", arguments.to, "format")
@@ -100,7 +135,8 @@ int dispatch(int argc, char** argv, Stack& stack) {
   }
   if (campaign_command->parsed()) return run_campaign(arguments);
   if (bench_command->parsed()) return bench(arguments.bench_name, stack);
-  if (traversability_command->parsed()) return eval_traversability(arguments.traversability);
+  if (eval.registration->parsed()) return run_eval_registration(arguments);
+  if (eval.traversability->parsed()) return eval_traversability(arguments.traversability);
   if (motion_command->parsed()) return make_motion_file(arguments.motion);
   return export_command->parsed()
              ? export_record(arguments.input, arguments.to, arguments.out, stack)

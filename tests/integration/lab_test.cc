@@ -38,6 +38,22 @@ TEST(Lab, CampaignCountsAndKeepsTheRecordsOfFailures) {
   EXPECT_TRUE(fs::exists(scratch.path("bad") / "seed-1" / "record.mcap"));
 }
 
+TEST(Lab, RegistrationOfBoardsIsMeasuredFromBothStarts) {
+  const Scratch scratch;
+  const ProgramResult result =
+      run_program("surefoot-lab eval registration --seeds 1..3 --out " + scratch.text("boards"));
+  ASSERT_EQ(result.code, 0) << result.error;
+  const nlohmann::json json = read_json(scratch.path("boards") / "registration.json");
+  for (const char* start : {"near", "far"}) {
+    EXPECT_EQ(json["starts"][start]["runs"], 3);
+    EXPECT_EQ(json["starts"][start]["failed"], 0);
+    EXPECT_LT(json["starts"][start]["worst_error_m"].get<double>(), 0.005);
+  }
+  EXPECT_TRUE(fs::exists(scratch.path("boards") / "registration.png"));
+  EXPECT_EQ(run_program("surefoot-lab eval registration --seeds 3..1").code, 2);
+  EXPECT_EQ(run_program("surefoot-lab eval registration --points 1").code, 2);
+}
+
 // Three levels: ground, a ledge of one step too many, a wall; and a corner without data.
 fs::path write_ledges(const fs::path& file, double cell_m) {
   std::ofstream grid(file);
