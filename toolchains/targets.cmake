@@ -37,4 +37,8 @@ if(NOT SUREFOOT_CORE_ONLY)
     find_library(OPENCV_${module} opencv_${module} REQUIRED)
     target_link_libraries(surefoot_opencv INTERFACE ${OPENCV_${module}})
   endforeach()
+  # The oracle of core/stereo, for tests and benchmarks only.
+  find_library(OPENCV_calib3d opencv_calib3d REQUIRED)
+  add_library(surefoot_opencv_calib3d INTERFACE)
+  target_link_libraries(surefoot_opencv_calib3d INTERFACE surefoot_opencv ${OPENCV_calib3d})
 endif()

@@ -1,0 +1,39 @@
+#include "core/stereo/point_cloud.h"
+
+#include "core/stereo/range_check.h"
+
+namespace surefoot::stereo {
+
+Status make_points(const DisparityImage& image, const RectifiedPair& pair,
+                   const PointConfig& config, PointCloud& out) {
+  out.clear();
+  RangeCheck check;
+  PointConfig::describe(config, check);
+  if (!check.good || image.width_px != pair.width_px || image.height_px != pair.height_px ||
+      !(pair.focal_px > 0.0 && pair.baseline_m > 0.0)) {
+    return Status::kInvalid;
+  }
+  const double focal_baseline = pair.focal_px * pair.baseline_m;
+  const double floor2 = config.disparity_floor_px * config.disparity_floor_px;
+  for (std::size_t v = 0; v < image.height_px; v += config.stride) {
+    for (std::size_t u = 0; u < image.width_px; u += config.stride) {
+      const std::int16_t value = image.row(v)[u];
+      if (value == kNoDisparity || value <= 0) continue;  // at infinity or beyond
+      const double z = focal_baseline * kSubpixels / value;
+      if (!(z >= config.min_range_m && z <= config.max_range_m)) continue;
+      const double contrast = image.contrasts[v * image.width_px + u];
+      const double noise_px = contrast > 0.0 ? config.grey_noise / contrast : config.grey_noise;
+      const double z_per_px = z * z / focal_baseline;
+      StereoPoint point;
+      point.p_N_m = Vector3((static_cast<double>(u) - pair.cx_px) / pair.focal_px * z,
+                            (static_cast<double>(v) - pair.cy_px) / pair.focal_px * z, z);
+      point.variance_m2 = z_per_px * z_per_px * (floor2 + noise_px * noise_px);
+      point.u_px = static_cast<std::uint16_t>(u);
+      point.v_px = static_cast<std::uint16_t>(v);
+      if (!ok(out.push_back(point))) return Status::kExhausted;
+    }
+  }
+  return Status::kOk;
+}
+
+}  // namespace surefoot::stereo

@@ -1,0 +1,51 @@
+// Places of what was matched, with their uncertainty.
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/fixed_vector.h"
+#include "core/base/parameters.h"
+#include "core/base/status.h"
+#include "core/math/linear.h"
+#include "core/stereo/calibration.h"
+#include "core/stereo/images.h"
+
+namespace surefoot::stereo {
+
+inline constexpr std::size_t kMaxPoints = 320 * 240;
+
+struct PointConfig {
+  std::uint8_t stride = 1;
+  double min_range_m = 0;  // z in N
+  double max_range_m = 0;
+  double disparity_floor_px = 0;
+  double grey_noise = 0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.integer("stride", self.stride, {1, 16}, "every n-th pixel and row becomes a point");
+    visit.real("min_range_m", self.min_range_m, {0.01, 100.0}, "nearest point along the axis");
+    visit.real("max_range_m", self.max_range_m, {0.01, 1000.0}, "farthest point along the axis");
+    visit.real("disparity_floor_px", self.disparity_floor_px, {0.001, 2.0},
+               "one sigma of a disparity where contrast is high");
+    visit.real("grey_noise", self.grey_noise, {0.0, 100.0},
+               "one sigma of a disparity, in pixels, times the grey levels of contrast");
+  }
+};
+
+struct StereoPoint {
+  Vector3 p_N_m = Vector3::Zero();
+  double variance_m2 = 0;  // of z: the place moves along its ray with the disparity
+  std::uint16_t u_px = 0;
+  std::uint16_t v_px = 0;
+};
+
+using PointCloud = FixedVector<StereoPoint, kMaxPoints>;
+
+// sigma_z = z^2 / (focal baseline) sigma_d, sigma_d^2 = floor^2 + (grey_noise / contrast)^2.
+// kExhausted: kMaxPoints reached, the rows below are left out. kInvalid: sizes differ, or a value of
+// the configuration is out of range; the cloud is empty then. Cost: O(pixels).
+Status make_points(const DisparityImage& image, const RectifiedPair& pair,
+                   const PointConfig& config, PointCloud& out);
+
+}  // namespace surefoot::stereo
