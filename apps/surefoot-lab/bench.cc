@@ -1,9 +1,11 @@
 #include "apps/surefoot-lab/bench.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +16,7 @@
 #include "apps/common/run.h"
 #include "apps/surefoot-lab/bench_mapping.h"
 #include "apps/surefoot-lab/bench_mpc.h"
+#include "apps/surefoot-lab/bench_stereo.h"
 #include "apps/surefoot-lab/eval_registration.h"
 
 namespace surefoot::apps {
@@ -67,13 +70,11 @@ int bench_pictures() {
 }  // namespace
 
 int bench(const std::string& name, Stack& stack) {
-  if (!name.empty() && name != "run" && name != "pictures" && name != "mapping" && name != "mpc" &&
-      name != "registration") {
-    std::fputs(
-        fmt::format("bench: '{}' is unknown; there are: run pictures mapping mpc registration\n",
-                    name)
-            .c_str(),
-        stderr);
+  constexpr std::array kNames{"run", "pictures", "mapping", "registration", "mpc", "stereo"};
+  if (!name.empty() && std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
+    std::fputs(fmt::format("bench: '{}' is unknown; there are: {}\n", name, fmt::join(kNames, " "))
+                   .c_str(),
+               stderr);
     return 2;
   }
   int worst = 0;
@@ -81,6 +82,7 @@ int bench(const std::string& name, Stack& stack) {
   if (name.empty() || name == "mapping") worst = bench_mapping();
   if (name.empty() || name == "registration") worst = std::max(worst, bench_registration());
   if (name.empty() || name == "mpc") worst = std::max(worst, bench_mpc());
+  if (name.empty() || name == "stereo") worst = std::max(worst, bench_stereo());
   if (name.empty() || name == "run") worst = std::max(worst, bench_run(stack));
   return worst;
 }

@@ -114,7 +114,7 @@ int dispatch(int argc, char** argv, Stack& stack) {
   Arguments arguments;
   CLI::App* campaign_command = add_campaign(app, arguments);
   CLI::App* bench_command =
-      app.add_subcommand("bench", "benchmarks: run, pictures, mapping, registration, mpc");
+      app.add_subcommand("bench", "benchmarks: run, pictures, mapping, registration, mpc, stereo");
   bench_command->add_option("NAME", arguments.bench_name, "one of them; all when left out");
   const EvalCommands eval = add_eval(app, arguments);
   CLI::App* export_command = app.add_subcommand("export", "converts a record");

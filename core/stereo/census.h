@@ -23,8 +23,8 @@ class CensusRow {
  public:
   using RowPointers = std::array<const std::uint8_t*, kCensusRows>;
 
-  // start(), then advance() for rows 0, 1, ... in turn. Beyond the border the picture continues with its
-  // outermost pixels. Cost: O(width).
+  // start(), then advance() for rows 0, 1, ... in turn. Beyond the border the picture continues
+  // with its outermost pixels. Cost: O(width).
   void start(const GreyView& image);
   void advance(const GreyView& image, std::size_t v);
 

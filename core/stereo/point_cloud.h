@@ -43,8 +43,8 @@ struct StereoPoint {
 using PointCloud = FixedVector<StereoPoint, kMaxPoints>;
 
 // sigma_z = z^2 / (focal baseline) sigma_d, sigma_d^2 = floor^2 + (grey_noise / contrast)^2.
-// kExhausted: kMaxPoints reached, the rows below are left out. kInvalid: sizes differ, or a value of
-// the configuration is out of range; the cloud is empty then. Cost: O(pixels).
+// kExhausted: kMaxPoints reached, the rows below are left out. kInvalid: sizes differ, or a value
+// of the configuration is out of range; the cloud is empty then. Cost: O(pixels).
 Status make_points(const DisparityImage& image, const RectifiedPair& pair,
                    const PointConfig& config, PointCloud& out);
 

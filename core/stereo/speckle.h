@@ -16,12 +16,11 @@ class SpeckleFilter {
   std::uint32_t run(std::uint32_t least_pixels, std::int16_t step, DisparityImage& image);
 
  private:
-  std::uint32_t root(std::uint32_t pixel);
-  void join(std::uint32_t a, std::uint32_t b);
+  std::int32_t root(std::int32_t pixel);
+  void join(std::int32_t a, std::int32_t b);
 
-  // Union-find over pixels: a root is its own parent and knows its area's size.
-  std::array<std::uint32_t, kMaxPixels> parents_{};
-  std::array<std::uint32_t, kMaxPixels> sizes_{};
+  // Union-find over pixels: the parent, or of a root minus the size of its area.
+  std::array<std::int32_t, kMaxPixels> parents_{};
 };
 
 }  // namespace surefoot::stereo

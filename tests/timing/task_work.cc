@@ -21,9 +21,9 @@ extern "C" [[gnu::noinline]] void measured_region(surefoot::timing::WorkCase* wo
 namespace surefoot::timing {
 namespace {
 
-constexpr std::array kTables{kControlCases,      kModuleCases,   kMpcCases,
-                             kDynamicsCases,     kJumpCases,     kMappingCases,
-                             kRegistrationCases, kObstacleCases, kExecutiveCases};
+constexpr std::array kTables{kControlCases,   kModuleCases,  kMpcCases,          kDynamicsCases,
+                             kJumpCases,      kMappingCases, kRegistrationCases, kObstacleCases,
+                             kExecutiveCases, kStereoCases};
 
 int list() {
   for (const WorkEntry* table : kTables) {

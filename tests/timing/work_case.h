@@ -39,5 +39,6 @@ extern const WorkEntry kExecutiveCases[];
 extern const WorkEntry kDynamicsCases[];
 extern const WorkEntry kJumpCases[];
 extern const WorkEntry kObstacleCases[];
+extern const WorkEntry kStereoCases[];
 
 }  // namespace surefoot::timing

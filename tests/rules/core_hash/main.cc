@@ -21,6 +21,7 @@ constexpr Workload kWorkloads[] = {
     {"attitude", surefoot::tests::hash_attitude},
     {"tracking", surefoot::tests::hash_tracking},
     {"registration", surefoot::tests::hash_registration},
+    {"stereo", surefoot::tests::hash_stereo},
     {"mapping", surefoot::tests::hash_mapping},
     {"swing", surefoot::tests::hash_swing},
     {"convex_mpc", surefoot::tests::hash_convex_mpc},

@@ -31,6 +31,7 @@ void hash_actuation(Fnv64& hash);
 void hash_attitude(Fnv64& hash);
 void hash_tracking(Fnv64& hash);
 void hash_registration(Fnv64& hash);
+void hash_stereo(Fnv64& hash);
 void hash_mapping(Fnv64& hash);
 void hash_swing(Fnv64& hash);
 void hash_convex_mpc(Fnv64& hash);

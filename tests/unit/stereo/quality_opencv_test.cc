@@ -1,4 +1,4 @@
-// Quality on rendered pairs against OpenCV's matchers, and the predicted noise against the real one.
+// Quality on rendered pairs against OpenCV's matchers, and the predicted noise against the real.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,0 +1,114 @@
+// Stereo: one pair of the reference size. The matcher's work does not depend on what it sees but
+// for the speckle filter, which has most to join where everything is one surface.
+#include "core/base/assert.h"
+#include "core/base/random.h"
+#include "core/stereo/matcher.h"
+#include "core/stereo/point_cloud.h"
+#include "core/stereo/rectifier.h"
+#include "tests/support/stereo_setup.h"
+#include "tests/timing/work_case.h"
+
+namespace surefoot::timing {
+namespace {
+
+constexpr std::uint16_t kWidth_px = 320;
+constexpr std::uint16_t kHeight_px = 240;
+constexpr int kDisparity_px = 20;
+
+class Stereo : public WorkCase {
+ public:
+  bool prepare(std::size_t round) override {
+    if (round > 0) return false;
+    stereo::StereoCalibration cameras;
+    for (stereo::CameraModel* camera : {&cameras.left, &cameras.right}) {
+      *camera = {kWidth_px, kHeight_px, 260.0, 260.0, 159.5, 119.5, {}};
+    }
+    cameras.p_EV_m = Vector3(-0.06, 0.0, 0.0);
+    stereo::RectifiedPair pair;
+    SUREFOOT_ASSERT(ok(stereo::rectify(cameras, kWidth_px, kHeight_px, 0.0, pair)));
+    SUREFOOT_ASSERT(ok(rectifier_.configure(cameras, pair)));
+    SUREFOOT_ASSERT(ok(matcher_.configure(tests::recommended_matcher())));
+    draw();
+    return true;
+  }
+
+ protected:
+  void rectify() {
+    SUREFOOT_ASSERT(ok(rectifier_.run(left_.view(), right_.view(), flat_left_, flat_right_)));
+  }
+  void match() {
+    SUREFOOT_ASSERT(
+        ok(matcher_.match(flat_left_.view(), flat_right_.view(), disparities_, &report_)));
+  }
+
+  stereo::Rectifier rectifier_;
+  stereo::Matcher matcher_;
+  stereo::GreyImage left_;
+  stereo::GreyImage right_;
+  stereo::GreyImage flat_left_;
+  stereo::GreyImage flat_right_;
+  stereo::DisparityImage disparities_;
+  stereo::MatchReport report_;
+
+ private:
+  // Random texture on a plane across the view.
+  void draw() {
+    Random random(1);
+    for (stereo::GreyImage* image : {&left_, &right_}) {
+      image->width_px = kWidth_px;
+      image->height_px = kHeight_px;
+    }
+    for (std::size_t i = 0; i < left_.view().pixel_count(); ++i) {
+      left_.pixels[i] = static_cast<std::uint8_t>(random.below(256));
+      right_.pixels[i] = static_cast<std::uint8_t>(random.below(256));
+      if (i >= kDisparity_px) right_.pixels[i - kDisparity_px] = left_.pixels[i];
+    }
+  }
+};
+
+class StereoMatch final : public Stereo {
+ public:
+  bool prepare(std::size_t round) override {
+    if (!Stereo::prepare(round)) return false;
+    rectify();
+    return true;
+  }
+  void run() override { match(); }
+  bool did_the_work() override { return report_.matched > 60000; }
+};
+
+class StereoRest final : public Stereo {
+ public:
+  bool prepare(std::size_t round) override {
+    if (!Stereo::prepare(round)) return false;
+    rectify();
+    match();
+    return true;
+  }
+  void run() override {
+    rectify();
+    cleared_ = rectifier_.clear_unseen(3, disparities_);
+    status_ =
+        stereo::make_points(disparities_, rectifier_.pair(), tests::recommended_points(), cloud_);
+  }
+  bool did_the_work() override { return ok(status_) && cleared_ > 0 && cloud_.size() > 55000; }
+
+ private:
+  std::uint32_t cleared_ = 0;
+  Status status_ = Status::kNotFound;
+  stereo::PointCloud cloud_;
+};
+
+template <class Case>
+std::unique_ptr<WorkCase> make() {
+  return std::make_unique<Case>();
+}
+
+}  // namespace
+
+const WorkEntry kStereoCases[] = {
+    {"stereo_match", "matching, 320 x 240 pixels, 64 disparities, all matched", make<StereoMatch>},
+    {"stereo_rest", "rectification and points of such a pair", make<StereoRest>},
+    {nullptr, nullptr, nullptr}};
+
+}  // namespace surefoot::timing
