@@ -6,8 +6,9 @@
 namespace surefoot::autonomy {
 namespace {
 
-constexpr double kFolded_rad = 0.3;     // off the folded pose: too far to stand up from as it is
-constexpr double kForget_m = 1.5;       // around a robot that fell
+constexpr double kFolded_rad = 0.3;  // off the folded pose: too far to stand up from as it is
+constexpr double kForget_m = 1.5;    // around a robot that fell
+constexpr TimeNs kTrustedBeforeFall = milliseconds(600);  // the pose by the legs, that much before
 constexpr double kBrakingShare = 0.75;  // of the command's acceleration: the trunk lags behind it
 
 std::array<double, 3> to_array(const Vector3& v) { return {v[0], v[1], v[2]}; }
@@ -116,12 +117,10 @@ void Autonomy::receive() {
 void Autonomy::receive_poses() {
   for (const hal::PoseSample& sample : inputs_->pose) {
     const Result<PastPose> past = history_.at(sample.stamp);
-    if (!past.ok()) {
-      estimator_.count_pose_without_stamp();
-      continue;
-    }
+    Result<estimation::PoseAtStamp> own = Status::kUnavailable;
+    if (past.ok()) own = estimation::PoseAtStamp{past.value().p_OB_m, past.value().q_OB};
     // Refusals are counted by the estimator.
-    static_cast<void>(estimator_.observe_pose(sample, {past.value().p_OB_m, past.value().q_OB}));
+    static_cast<void>(estimator_.observe_pose(sample, own));
   }
 }
 
@@ -190,12 +189,16 @@ void Autonomy::note_footing(const estimation::RobotState& state) {
   footing_O_m_ = Vector3(state.p_OB_m[0], state.p_OB_m[1], ground_m / feet);
 }
 
-// How it fell is nothing that the legs have measured: the place is that of the last footing, the
-// heading that of the gyro, and the map waits until the robot stands.
+// How it fell is nothing that the legs have measured: until the robot stands the place is that of
+// the last footing, and the map waits.
 void Autonomy::recover(const estimation::RobotState& state) {
   if (mission_.phase_changed()) {
     jump_pilot_.abandon();
-    if (walking_ready_) recovery_.begin();
+    if (walking_ready_) {
+      recovery_.begin();
+      estimator_.note_fall(state.stamp - kTrustedBeforeFall);
+      history_.clear();
+    }
     recovery_.start();
     walking_ready_ = false;
     collapsed_s_ = 0;
@@ -209,12 +212,17 @@ void Autonomy::start_stand_up() {
 }
 
 // Stand-up is over: O gets its place on the ground below the trunk, where the feet say that it is,
-// and the start pad enters the map. After a fall O stays as it was; the map around the robot is
-// off by as much as the robot slid, and is seen anew.
+// and the start pad enters the map. After a fall O stays as it was and the tracking camera says
+// where the robot is in it; without one the last footing has to do, the heading is the gyro's. The
+// map around the robot, off by what they do not know, is seen anew.
 void Autonomy::begin_walking(const estimation::RobotState& state) {
-  if (!has_stood_) estimator_.set_yaw(0.0);
-  estimator_.place(footing_O_m_ +
-                   Vector3(0.0, 0.0, height_over_feet_m(state) + model_.foot_radius_m));
+  const Vector3 over_ground_m(0.0, 0.0, height_over_feet_m(state) + model_.foot_radius_m);
+  if (has_stood_ && ok(estimator_.relocate(state.stamp))) {
+    footing_O_m_ = state.p_OB_m - over_ground_m;
+  } else {
+    if (!has_stood_) estimator_.set_yaw(0.0);
+    estimator_.place(footing_O_m_ + over_ground_m);
+  }
   locomotion_.start(estimator_.state());
   history_.clear();
   walking_ready_ = true;

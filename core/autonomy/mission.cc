@@ -48,6 +48,13 @@ void Mission::begin_line() {
   least_to_go_m_ = path_.length_m;
 }
 
+// A fall may have ended far off the line: on from there.
+void Mission::begin_line_here(const estimation::RobotState& state) {
+  fell_ = false;
+  path_.from_O_m = state.p_OB_m.head<2>();
+  begin_line();
+}
+
 // false: that was the last.
 bool Mission::next_line() {
   if (waypoint_ + 1 >= config_.waypoints.size()) return false;
@@ -95,7 +102,10 @@ void Mission::update(const estimation::RobotState& state, const MissionFacts& fa
   phase_s_ += step_s;
   if (phase_ == MissionPhase::kStopped) return;
   const bool may_fall = phase_ >= MissionPhase::kStandUp;
-  if (config_.recover && may_fall && facts.fallen) return enter(MissionPhase::kRecover);
+  if (config_.recover && may_fall && facts.fallen) {
+    fell_ = fell_ || phase_ >= MissionPhase::kSettle;
+    return enter(MissionPhase::kRecover);
+  }
   if (facts.fault != StopReason::kNone) return stop(facts.fault);
   if (phase_ == MissionPhase::kArrived) {
     rested_s_ = facts.at_rest ? rested_s_ + step_s : 0.0;
@@ -123,6 +133,7 @@ void Mission::update(const estimation::RobotState& state, const MissionFacts& fa
       if (stand && phase_s_ >= config_.stand_s) return enter(MissionPhase::kArrived);
       if (stand || phase_s_ < config_.settle_s) break;
       gait_ = config_.gait;
+      if (fell_) begin_line_here(state);
       return enter(MissionPhase::kWalk);
     }
     case MissionPhase::kWalk:

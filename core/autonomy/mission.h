@@ -64,6 +64,7 @@ class Mission {
   void cross(const estimation::RobotState& state, double step_s);
   void follow_script(const estimation::RobotState& state, double step_s);
   void begin_line();
+  void begin_line_here(const estimation::RobotState& state);
   bool next_line();
   bool at_end(const estimation::RobotState& state) const;
   void note_progress(double to_go_m, double step_s);
@@ -85,6 +86,7 @@ class Mission {
   Path path_;
   double least_to_go_m_ = 0;  // on the line in hand
   double stuck_s_ = 0;
+  bool fell_ = false;       // since it last walked
   double heading_rad_ = 0;  // mission script: what the commanded turns add up to
 };
 

@@ -12,7 +12,9 @@ void Estimator::reset(const EstimationConfig& config, const robot::RobotModel& m
   attitude_.reset(config.attitude, model.imu);
   contact_.reset(config.contact, model, tick_s);
   body_.reset(config.body);
-  drift_.reset(config.tracking, model.tracking_camera);
+  camera_ = CameraMount(model.tracking_camera);
+  drift_.reset(config.tracking);
+  relocation_ = Relocation{};
   state_ = RobotState{};
 }
 
@@ -60,12 +62,29 @@ std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
   return refused;
 }
 
-Status Estimator::observe_pose(const hal::PoseSample& sample, const PoseAtStamp& own) {
-  DriftCorrection correction;
-  const Status status = drift_.observe(sample, own, correction);
-  if (!ok(status)) return status;
+Status Estimator::observe_pose(const hal::PoseSample& sample, const Result<PoseAtStamp>& own) {
+  const Status checked = drift_.check(sample);
+  if (!ok(checked)) return checked;
+  const CameraPose camera = camera_.trunk(sample);
+  if (!own.ok()) {
+    drift_.count_without_pose();
+    relocation_.observe(camera);
+    return Status::kOk;
+  }
+  relocation_.observe(camera, own.value());
+  const DriftCorrection correction = drift_.observe(camera, own.value());
   attitude_.correct_yaw(correction.yaw_rad, correction.yaw_bias_rad_s);
   body_.move(correction.shift_O_m, correction.yaw_rad);
+  return Status::kOk;
+}
+
+Status Estimator::relocate(TimeNs now) {
+  const Result<PoseAtStamp> pose = relocation_.pose(now);
+  if (!pose.ok()) return pose.status();
+  const Matrix3 R_OB = geometry::to_matrix(pose.value().q_OB);
+  set_yaw(math::atan2(R_OB(1, 0), R_OB(0, 0)));
+  place(pose.value().p_OB_m);
+  drift_.count_relocation();
   return Status::kOk;
 }
 

@@ -10,6 +10,7 @@
 #include "core/estimation/body_state.h"
 #include "core/estimation/config.h"
 #include "core/estimation/contact.h"
+#include "core/estimation/relocation.h"
 #include "core/estimation/tracking.h"
 #include "core/geometry/frames.h"
 #include "core/robot/robot_model.h"
@@ -49,11 +50,16 @@ class Estimator {
                      const std::array<actuation::JointState, robot::kJoints>& joints,
                      const std::array<GaitPhase, robot::kLegs>& gait, bool lying_still);
 
-  // A sample of the tracking camera and this estimator's own pose at its stamp; corrects what the
-  // next update() starts from. Status: DriftEstimator::observe().
-  Status observe_pose(const hal::PoseSample& sample, const PoseAtStamp& own);
-  // For a sample whose stamp has no pose.
-  void count_pose_without_stamp() { drift_.count_without_pose(); }
+  // A sample of the tracking camera and this estimator's own pose at its stamp, where it knows it
+  // (kUnavailable: it does not); corrects what the next update() starts from. Status:
+  // DriftEstimator::check(), nothing changed but the counters then.
+  Status observe_pose(const hal::PoseSample& sample, const Result<PoseAtStamp>& own);
+
+  // The robot has fallen; its pose was right at `trusted`.
+  void note_fall(TimeNs trusted) { relocation_.pin(trusted); }
+  // It stands again: where and which way, by the camera. kUnavailable: the camera cannot tell,
+  // nothing changed.
+  Status relocate(TimeNs now);
 
   // Declares where the trunk is: O's origin lies on the ground below it. Whoever keeps poses of O
   // forgets them now.
@@ -75,7 +81,9 @@ class Estimator {
   AttitudeEstimator attitude_;
   ContactEstimator contact_;
   BodyStateEstimator body_;
+  CameraMount camera_;
   DriftEstimator drift_;
+  Relocation relocation_;
   std::array<FootObservation, robot::kLegs> observations_;
   RobotState state_;
 };

@@ -9,41 +9,20 @@ namespace {
 constexpr int kAveraged = 40;
 // A gap longer than this is an outage: the sample after it compares, those that follow correct.
 constexpr double kMaxStep_s = 0.05;
-constexpr double kUnitTolerance = 1e-3;  // of the squared norm of a unit quaternion
-
-Vector3 from_array(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
-bool finite(const hal::PoseSample& sample) {
-  bool finite = true;
-  for (const double p : sample.p_ST_m) finite = finite && math::is_finite(p);
-  for (const double q : sample.q_ST_wxyz) finite = finite && math::is_finite(q);
-  return finite;
-}
-
-double unit_error(const std::array<double, 4>& q) {
-  double sum = -1.0;
-  for (const double part : q) sum += part * part;
-  return sum < 0 ? -sum : sum;
-}
-
 Matrix3 turn(const Vector3& rotation_rad) {
   return geometry::to_matrix(geometry::from_rotation_vector(rotation_rad));
 }
 
 }  // namespace
 
-void DriftEstimator::reset(const TrackingConfig& config,
-                           const robot::TrackingCameraSpecification& camera) {
+void DriftEstimator::reset(const TrackingConfig& config) {
   *this = DriftEstimator{};
   config_ = config;
-  const auto& rpy = camera.mount.roll_pitch_yaw_rad;
-  R_BT_ = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]);
-  p_BT_m_ = from_array(camera.mount.position_B_m);
 }
 
 Status DriftEstimator::check(const hal::PoseSample& sample) {
-  const bool later = !anchored_ || sample.stamp > stamp_;
-  if (!finite(sample) || unit_error(sample.q_ST_wxyz) > kUnitTolerance || !later) {
+  const bool later = !checked_any_ || sample.stamp > checked_stamp_;
+  if (!is_pose(sample) || !later) {
     ++counters_.refused;
     return Status::kInvalid;
   }
@@ -51,26 +30,15 @@ Status DriftEstimator::check(const hal::PoseSample& sample) {
     ++counters_.low_confidence;
     return Status::kUnavailable;
   }
-  ++counters_.used;
+  checked_any_ = true;
+  checked_stamp_ = sample.stamp;
   return Status::kOk;
-}
-
-DriftEstimator::Observation DriftEstimator::chain(const hal::PoseSample& sample,
-                                                  const PoseAtStamp& own) const {
-  const auto& q = sample.q_ST_wxyz;
-  Observation now;
-  now.R_SB =
-      geometry::to_matrix(geometry::normalised({q[0], q[1], q[2], q[3]})) * R_BT_.transpose();
-  now.p_SB_m = from_array(sample.p_ST_m) - now.R_SB * p_BT_m_;
-  now.R_OB = geometry::to_matrix(own.q_OB);
-  now.p_OB_m = own.p_OB_m;
-  return now;
 }
 
 void DriftEstimator::anchor(const Observation& now) {
   anchored_ = true;
   averaged_ = 0;
-  R_OS_ = now.R_OB * now.R_SB.transpose();
+  R_OS_ = now.R_OB * now.camera.R_SB.transpose();
   p_OB_camera_m_ = now.p_OB_m;
   error_O_m_.setZero();
   rotation_error_O_rad_.setZero();
@@ -80,9 +48,10 @@ void DriftEstimator::anchor(const Observation& now) {
 
 // The errors with this sample; S is moved when they changed more than they can.
 void DriftEstimator::compare(const Observation& now, double span_s) {
-  p_OB_camera_m_ += R_OS_ * (now.p_SB_m - p_SB_m_);
+  p_OB_camera_m_ += R_OS_ * (now.camera.p_SB_m - p_SB_m_);
   const Vector3 error = p_OB_camera_m_ - now.p_OB_m;
-  const Vector3 rotation = geometry::to_rotation_vector(R_OS_ * now.R_SB * now.R_OB.transpose());
+  const Vector3 rotation =
+      geometry::to_rotation_vector(R_OS_ * now.camera.R_SB * now.R_OB.transpose());
   const double allowed_m = config_.jump_m + config_.odometry_drift_m_s * span_s;
   const double allowed_rad = config_.jump_rad + config_.odometry_drift_rad_s * span_s;
   if ((error - error_O_m_).squaredNorm() > math::square(allowed_m) ||
@@ -103,7 +72,8 @@ void DriftEstimator::average(const Observation& now) {
   R_OS_ = turn((kept_rotation_O_rad_ - rotation_error_O_rad_) * share) * R_OS_;
   p_OB_camera_m_ += (kept_error_O_m_ - error_O_m_) * share;
   error_O_m_ = p_OB_camera_m_ - now.p_OB_m;
-  rotation_error_O_rad_ = geometry::to_rotation_vector(R_OS_ * now.R_SB * now.R_OB.transpose());
+  rotation_error_O_rad_ =
+      geometry::to_rotation_vector(R_OS_ * now.camera.R_SB * now.R_OB.transpose());
 }
 
 // Of the gain on an error: a leaky dead zone.
@@ -136,27 +106,23 @@ DriftCorrection DriftEstimator::correction(double step_s) const {
   return out;
 }
 
-Status DriftEstimator::observe(const hal::PoseSample& sample, const PoseAtStamp& own,
-                               DriftCorrection& out) {
-  out = DriftCorrection{};
-  const Status checked = check(sample);
-  if (!ok(checked)) return checked;
-  const Observation now = chain(sample, own);
-  const double span_s = anchored_ ? (sample.stamp - stamp_).seconds() : 0.0;
+DriftCorrection DriftEstimator::observe(const CameraPose& camera, const PoseAtStamp& own) {
+  ++counters_.used;
+  const Observation now{camera, geometry::to_matrix(own.q_OB), own.p_OB_m};
+  const double span_s = anchored_ ? (camera.stamp - stamp_).seconds() : 0.0;
   if (anchored_) {
     compare(now, span_s);
   } else {
     anchor(now);
   }
-  p_SB_m_ = now.p_SB_m;
-  stamp_ = sample.stamp;
+  p_SB_m_ = camera.p_SB_m;
+  stamp_ = camera.stamp;
   if (averaged_ < kAveraged) average(now);
   const double step_s = span_s > kMaxStep_s ? 0.0 : span_s;
   Vector3 tilt_rad = rotation_error_O_rad_;
   tilt_rad[2] = 0.0;
   R_OS_ = turn(tilt_rad * (-config_.tilt_gain_1_s * step_s)) * R_OS_;
-  out = correction(step_s);
-  return Status::kOk;
+  return correction(step_s);
 }
 
 }  // namespace surefoot::estimation

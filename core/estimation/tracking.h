@@ -21,6 +21,7 @@
 
 #include "core/base/status.h"
 #include "core/base/time.h"
+#include "core/estimation/camera_pose.h"
 #include "core/estimation/config.h"
 #include "core/geometry/rotations.h"
 #include "core/math/linear.h"
@@ -28,12 +29,6 @@
 #include "hal/api/pose_port.h"
 
 namespace surefoot::estimation {
-
-// The estimator's pose at a sample's stamp.
-struct PoseAtStamp {
-  Vector3 p_OB_m = Vector3::Zero();
-  geometry::Quaternion q_OB;
-};
 
 // To be added to the estimate now.
 struct DriftCorrection {
@@ -47,8 +42,9 @@ struct TrackingCounters {
   std::uint64_t used = 0;
   std::uint64_t refused = 0;         // not finite, not a rotation, out of order
   std::uint64_t low_confidence = 0;  // below min_confidence
-  std::uint64_t without_pose = 0;    // stamp outside the pose history: all, until O has its place
+  std::uint64_t without_pose = 0;    // stamp outside the pose history: all, while O has no place
   std::uint64_t jumps = 0;           // of those used: S was moved
+  std::uint64_t relocations = 0;     // after a fall the camera said where it is
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -57,21 +53,25 @@ struct TrackingCounters {
     visit("low_confidence", self.low_confidence);
     visit("without_pose", self.without_pose);
     visit("jumps", self.jumps);
+    visit("relocations", self.relocations);
   }
 };
 
 class DriftEstimator {
  public:
-  void reset(const TrackingConfig& config, const robot::TrackingCameraSpecification& camera);
+  void reset(const TrackingConfig& config);
 
   // O was placed anew: the next sample finds S.
   void restart() { anchored_ = false; }
 
-  // Takes the next sample. kInvalid: not finite, no unit quaternion, or not after the last one.
-  // kUnavailable: confidence too low. Nothing changed but the counters then, and `out` is zero.
-  Status observe(const hal::PoseSample& sample, const PoseAtStamp& own, DriftCorrection& out);
-  // For a sample whose stamp has no pose.
+  // Before the next sample is used. kInvalid: not finite, no unit quaternion, or not after the last
+  // one. kUnavailable: confidence too low. Counted.
+  Status check(const hal::PoseSample& sample);
+  // Takes the next sample.
+  DriftCorrection observe(const CameraPose& camera, const PoseAtStamp& own);
+  // Instead, for a sample whose stamp has no pose.
   void count_without_pose() { ++counters_.without_pose; }
+  void count_relocation() { ++counters_.relocations; }
 
   // Camera minus estimate at the last sample; zero before the first.
   const Vector3& position_error_O_m() const { return error_O_m_; }
@@ -80,14 +80,11 @@ class DriftEstimator {
 
  private:
   struct Observation {
-    Matrix3 R_SB;
-    Vector3 p_SB_m;
+    CameraPose camera;
     Matrix3 R_OB;  // own
     Vector3 p_OB_m;
   };
 
-  Status check(const hal::PoseSample& sample);
-  Observation chain(const hal::PoseSample& sample, const PoseAtStamp& own) const;
   void anchor(const Observation& now);
   void compare(const Observation& now, double span_s);
   void average(const Observation& now);
@@ -95,10 +92,10 @@ class DriftEstimator {
   DriftCorrection correction(double step_s) const;
 
   TrackingConfig config_;
-  Matrix3 R_BT_ = Matrix3::Identity();
-  Vector3 p_BT_m_ = Vector3::Zero();
   bool anchored_ = false;
-  int averaged_ = 0;  // samples since S was found or moved
+  bool checked_any_ = false;
+  TimeNs checked_stamp_;  // of the last sample that passed
+  int averaged_ = 0;      // samples since S was found or moved
   TimeNs stamp_;
   Matrix3 R_OS_ = Matrix3::Identity();
   Vector3 p_OB_camera_m_ = Vector3::Zero();  // the camera's way, summed up in O

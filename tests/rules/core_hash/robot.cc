@@ -4,6 +4,7 @@
 #include "core/actuation/motor_protocol.h"
 #include "core/base/random.h"
 #include "core/estimation/attitude.h"
+#include "core/estimation/relocation.h"
 #include "core/estimation/tracking.h"
 #include "core/geometry/rotations.h"
 #include "core/robot/dynamics.h"
@@ -127,7 +128,9 @@ void hash_tracking(Fnv64& hash) {
   camera.mount.position_B_m = {0.26, 0.01, -0.02};
   camera.mount.roll_pitch_yaw_rad = {0.1, -0.2, 0.3};
   estimation::DriftEstimator drift;
-  drift.reset(config, camera);
+  drift.reset(config);
+  const estimation::CameraMount mount(camera);
+  estimation::Relocation relocation;
   Random random(16);
   for (int i = 0; i < 5000; ++i) {
     hal::PoseSample sample;
@@ -141,10 +144,15 @@ void hash_tracking(Fnv64& hash) {
     sample.q_ST_wxyz = {q.w, q.x, q.y, q.z};
     estimation::PoseAtStamp own;
     own.p_OB_m = Vector3(0.0025 * i, 0.002 * i, 0.3);
-    estimation::DriftCorrection correction;
-    hash.byte(static_cast<std::uint8_t>(drift.observe(sample, own, correction)));
+    hash.byte(static_cast<std::uint8_t>(drift.check(sample)));
+    const estimation::CameraPose pose = mount.trunk(sample);
+    const estimation::DriftCorrection correction = drift.observe(pose, own);
     mix(hash, correction.shift_O_m);
     mix(hash, correction.yaw_rad);
+    relocation.observe(pose, own);
+    if (i % 100 == 0) relocation.pin(milliseconds(5 * (i - 100)));
+    const Result<estimation::PoseAtStamp> found = relocation.pose(sample.stamp);
+    if (found.ok()) mix(hash, found.value().p_OB_m);
   }
   hash.word(drift.counters().jumps, 8);
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/random.h"
+#include "core/estimation/relocation.h"
 #include "core/estimation/tracking.h"
 
 namespace surefoot::estimation {
@@ -52,7 +53,7 @@ class Walk {
   Vector3 camera_shift_m = Vector3::Zero();  // of a camera that relocalises, in S
   double camera_yaw_rad = 0;
 
-  Walk() { drift.reset(tracking_config(), camera()); }
+  Walk() { drift.reset(tracking_config()); }
 
   // One step of body and odometry.
   void move() {
@@ -91,8 +92,12 @@ class Walk {
     return sample;
   }
   PoseAtStamp own() const { return {own_p_m, geometry::to_quaternion(body(own_yaw_rad))}; }
+  CameraPose camera_pose() { return CameraMount(camera()).trunk(sample()); }
   Status observe() {
-    const Status status = drift.observe(sample(), own(), correction);
+    const hal::PoseSample taken = sample();
+    const Status status = drift.check(taken);
+    if (!ok(status)) return status;
+    correction = drift.observe(CameraMount(camera()).trunk(taken), own());
     own_p_m += correction.shift_O_m;
     own_yaw_rad += correction.yaw_rad;
     yaw_bias_rad_s -= correction.yaw_bias_rad_s;
@@ -244,11 +249,7 @@ TEST(Drift, RefusesAndCountsWhatIsNoPose) {
   walk.run(1.0);
   const Vector3 before = walk.drift.position_error_O_m();
   const auto refuse = [&](const hal::PoseSample& sample, Status expected) {
-    DriftCorrection correction;
-    correction.yaw_rad = 1;
-    EXPECT_EQ(walk.drift.observe(sample, walk.own(), correction), expected);
-    EXPECT_EQ(correction.yaw_rad, 0.0);
-    EXPECT_EQ(correction.shift_O_m.norm(), 0.0);
+    EXPECT_EQ(walk.drift.check(sample), expected);
   };
   refuse(walk.sample(), Status::kInvalid);  // the stamp of the last one
   walk.move();
@@ -266,6 +267,90 @@ TEST(Drift, RefusesAndCountsWhatIsNoPose) {
   EXPECT_EQ(walk.drift.counters().low_confidence, 1u);
   EXPECT_EQ(walk.drift.counters().used, 200u);
   EXPECT_EQ(walk.observe(), Status::kOk);
+}
+
+// Walks for two seconds, falls a third of a second after `trusted`, and is carried away by its legs.
+struct Fall {
+  Walk walk;
+  Relocation relocation;
+  TimeNs trusted;
+
+  Fall() {
+    step(400);
+    trusted = walk.stamp;
+    for (int i = 0; i < 60; ++i) {
+      step(1);
+      walk.own_p_m += Vector3(0.01, -0.02, 0.005);
+    }
+    relocation.pin(trusted);
+  }
+  void step(int samples) {
+    for (int i = 0; i < samples; ++i) {
+      walk.move();
+      relocation.observe(walk.camera_pose(), walk.own());
+    }
+  }
+  void lie(int samples) {
+    for (int i = 0; i < samples; ++i) {
+      walk.move();
+      relocation.observe(walk.camera_pose());
+    }
+  }
+};
+
+TEST(Relocation, TheCameraSaysWhereAFallHasEnded) {
+  Fall fall;
+  fall.walk.yaw_rad += 0.8;  // it is turned as it falls, and the gyro has seen nothing of it
+  fall.lie(800);
+  const Result<PoseAtStamp> pose = fall.relocation.pose(fall.walk.stamp);
+  ASSERT_TRUE(pose.ok());
+  EXPECT_LT((pose.value().p_OB_m - fall.walk.p_m).norm(), 1e-9);
+  const Vector3 rpy = geometry::to_roll_pitch_yaw(geometry::to_matrix(pose.value().q_OB));
+  EXPECT_NEAR(rpy[2], fall.walk.yaw_rad, 1e-9);
+}
+
+TEST(Relocation, TheErrorOfAnOwnPoseBeforeTheFallStays) {
+  Fall fall;
+  fall.relocation.pin(fall.trusted + milliseconds(150));  // half of the way it was carried
+  fall.lie(100);
+  const Result<PoseAtStamp> pose = fall.relocation.pose(fall.walk.stamp);
+  ASSERT_TRUE(pose.ok());
+  EXPECT_NEAR((pose.value().p_OB_m - fall.walk.p_m).norm(), 30 * Vector3(1, -2, 0.5).norm() * 0.01,
+              0.03);
+}
+
+TEST(Relocation, ACameraThatWasAwayCannotTell) {
+  Fall fall;
+  fall.lie(50);
+  for (int i = 0; i < 50; ++i) fall.walk.move();
+  EXPECT_FALSE(fall.relocation.pose(fall.walk.stamp).ok());  // is away
+  fall.lie(50);
+  EXPECT_FALSE(fall.relocation.pose(fall.walk.stamp).ok());  // was away
+}
+
+TEST(Relocation, AFallRightAfterGettingUpCountsFromTheFallBefore) {
+  Fall fall;
+  fall.lie(200);
+  fall.walk.own_p_m = fall.walk.p_m;
+  const TimeNs stood_up = fall.walk.stamp;
+  fall.step(10);
+  fall.walk.own_p_m += Vector3(1, 0, 0);
+  fall.step(10);
+  fall.relocation.pin(stood_up - milliseconds(10));
+  fall.lie(200);
+  const Result<PoseAtStamp> pose = fall.relocation.pose(fall.walk.stamp);
+  ASSERT_TRUE(pose.ok());
+  EXPECT_LT((pose.value().p_OB_m - fall.walk.p_m).norm(), 1e-9);
+}
+
+TEST(Relocation, NothingPinnedIsUnavailable) {
+  Relocation relocation;
+  EXPECT_EQ(relocation.pose(TimeNs{0}).status(), Status::kUnavailable);
+  Walk walk;
+  walk.move();
+  relocation.observe(walk.camera_pose(), walk.own());
+  relocation.pin(TimeNs{0});  // older than what is kept
+  EXPECT_EQ(relocation.pose(walk.stamp).status(), Status::kUnavailable);
 }
 
 }  // namespace
