@@ -91,7 +91,10 @@ void Referee::observe(TimeNs stamp, const autonomy::Telemetry& telemetry, const 
   if (phase_ == MissionPhase::kRecover || phase_ == MissionPhase::kStandUp) is_down_ = false;
   const bool on_feet = phase_ >= MissionPhase::kSettle && phase_ <= MissionPhase::kArrived;
   was_up_ = was_up_ || (on_feet && !is_down_);
-  if (!on_feet && rules_.may_recover) was_up_ = false;
+  if (!on_feet && rules_.may_recover) {
+    if (phase_ == MissionPhase::kRecover && was_up_) ++falls_;  // it noticed first
+    was_up_ = false;
+  }
   if (phase_ == MissionPhase::kStopped && stop_reason_ == StopReason::kTilt) {
     end(Outcome::kFall, describe(stop_reason_));
   }

@@ -28,6 +28,7 @@ Json counters_json(const RunFacts& facts) {
           {"pose_low_confidence", facts.tracking.low_confidence},
           {"pose_without_stamp", facts.tracking.without_pose},
           {"pose_jumps", facts.tracking.jumps},
+          {"pose_relocations", facts.tracking.relocations},
           {"depth_invalid", facts.counters.depth_invalid},
           {"sends_refused", facts.counters.sends_refused},
           {"records_refused", facts.counters.records_refused},

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kFolded_rad = 0.3;  // off the folded pose: too far to stand up from as it is
 constexpr double kForget_m = 1.5;    // around a robot that fell
-constexpr TimeNs kTrustedBeforeFall = milliseconds(600);  // the pose by the legs, that much before
+constexpr TimeNs kTrustedBeforeFall = milliseconds(1000);  // the pose by the legs, that much before
 constexpr double kBrakingShare = 0.75;  // of the command's acceleration: the trunk lags behind it
 
 std::array<double, 3> to_array(const Vector3& v) { return {v[0], v[1], v[2]}; }

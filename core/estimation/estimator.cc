@@ -23,6 +23,7 @@ void Estimator::place(const Vector3& p_OB_m) {
   drift_.restart();
   state_.p_OB_m = p_OB_m;
   state_.v_OB_m_s.setZero();
+  place_feet();
 }
 
 void Estimator::set_yaw(double yaw_rad) {
@@ -30,6 +31,11 @@ void Estimator::set_yaw(double yaw_rad) {
   state_.q_OB = attitude_.q_OB();
   state_.R_OB = attitude_.R_OB();
   state_.yaw_rad = yaw_rad;
+  place_feet();
+}
+
+void Estimator::place_feet() {
+  for (FootState& foot : state_.feet) foot.p_O_m = state_.p_OB_m + state_.R_OB * foot.p_B_m;
 }
 
 std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
@@ -56,9 +62,7 @@ std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
 
   state_.p_OB_m = body_.p_OB_m();
   state_.v_OB_m_s = body_.v_OB_m_s();
-  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    state_.feet[leg].p_O_m = state_.p_OB_m + observations_[leg].from_body_O_m;
-  }
+  place_feet();
   return refused;
 }
 

@@ -74,6 +74,7 @@ class Estimator {
 
  private:
   void observe_feet();
+  void place_feet();
   void decide_contacts(const std::array<GaitPhase, robot::kLegs>& gait);
 
   robot::RobotModel model_;

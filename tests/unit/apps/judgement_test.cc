@@ -137,9 +137,14 @@ TEST(Referee, WhereItMayGetUpEachFallCountsOnceAndTheRunGoesOn) {
     EXPECT_EQ(referee.falls(), fall);
     EXPECT_FALSE(referee.over());
   }
+  observe(MissionPhase::kWalk, 0.9);  // noticed before it is one by the truth
+  observe(MissionPhase::kRecover, 1.5);
+  EXPECT_EQ(referee.falls(), 3);
+  observe(MissionPhase::kStandUp, 0.0);
   observe(MissionPhase::kWalk, 0.0);
   observe(MissionPhase::kArrived, 0.0);
   EXPECT_EQ(referee.verdict().outcome, Outcome::kGoal);
+  EXPECT_EQ(referee.falls(), 3);
 }
 
 // Walks 3 m in 6 s with a sway of 1 cm, the estimate 1 % long.

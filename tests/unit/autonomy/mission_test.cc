@@ -212,9 +212,13 @@ TEST(Mission, GetsUpAfterAFallAndWalksOn) {
   MissionFacts up = healthy();
   up.recovered = true;
   EXPECT_EQ(ticks_until(mission, MissionPhase::kStandUp, state, up, 10), 1);
+  // It has rolled 1 m to the side: straight to the goal from there.
+  state.p_OB_m = Vector3(1.0, 1.0, 0.3);
   ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, healthy(), 1000), 0);
   EXPECT_EQ(mission.gait(), control::GaitKind::kTrot);
-  state.p_OB_m[0] = 3.0;
+  EXPECT_LT((mission.path_O() - Vector2(2.0, -1.0).normalized()).norm(), 1e-12);
+  EXPECT_NEAR(mission.off_path_m(state), 0.0, 1e-12);
+  state.p_OB_m = Vector3(3.0, 0.0, 0.3);
   EXPECT_EQ(ticks_until(mission, MissionPhase::kArrived, state, healthy(), 10), 1);
 }
 

@@ -308,6 +308,11 @@ TEST(Estimator, SetYawTurnsTheHeadingAndKeepsTheTilt) {
   const Matrix3 expected = geometry::from_roll_pitch_yaw(0.1, -0.2, 2.5);
   EXPECT_LT((estimator.state().R_OB - expected).norm(), 1e-9);
   EXPECT_LT((geometry::to_matrix(estimator.state().q_OB) - expected).norm(), 1e-9);
+  // A declared place takes the feet along.
+  estimator.place(Vector3(5, -3, 1));
+  for (const FootState& foot : estimator.state().feet) {
+    EXPECT_LT((foot.p_O_m - Vector3(5, -3, 1) - expected * foot.p_B_m).norm(), 1e-9);
+  }
   run(500, rate_B);  // half a radian in a second, beyond pi
   EXPECT_NEAR(estimator.state().yaw_rad, 3.0, 1e-6);
   run(500, rate_B);
