@@ -292,6 +292,7 @@ FootholdCounts draw_footholds(Drawing& drawing, const std::vector<Touchdown>& to
         drawing.ring(axes.at(nominal[0], nominal[1]), 2.6, {palette::kInk, 1, false});
         drawing.dot(to, 3.2, palette::kRed);
         break;
+      case control::FootholdReason::kForced:
       case control::FootholdReason::kNone:
         ++counts.none;
         if (visible) drawing.ring(to, 4, {palette::kPurple, 2, false});

@@ -305,8 +305,8 @@ control::WalkCommand Autonomy::walk_command(const estimation::RobotState& state)
   velocity_ = avoiding(state);
   if (pilot) velocity_ = jump_pilot_.command();
   return {velocity_, pilot ? jump_pilot_.gait(mission_.gait()) : mission_.gait(),
-          config_.mission.unseen_ground ? control::UnseenGround::kAllowed
-                                        : control::UnseenGround::kRefused};
+          config_.mission.unseen_ground ? control::GroundRule::kGoodOrUnseen
+                                        : control::GroundRule::kGood};
 }
 
 bool Autonomy::locomotion_acts() const {

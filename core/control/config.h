@@ -51,6 +51,7 @@ struct FootholdConfig {
   double margin_weight_m = 0;      // detour that one more cell of distance from an edge is worth
   double lock_progress = 0;        // no change of target after this share of a swing
   double balance_error_m_s = 0;    // off the commanded speed by this: a step is due at any rate
+  double max_drag_m = 0;  // faster than this per period: a leg without good ground steps on bad
   double max_map_offset_m = 0;  // how far the feet may find the ground off the map (map_offset.h)
 
   template <class Self, class Visitor>
@@ -65,6 +66,8 @@ struct FootholdConfig {
     visit.real("lock_progress", self.lock_progress, {0.0, 1.0}, "target fixed after this share");
     visit.real("balance_error_m_s", self.balance_error_m_s, {0.0, 10.0},
                "off the commanded speed by this: unseen ground is allowed");
+    visit.real("max_drag_m", self.max_drag_m, {0.0, 2.0},
+               "way per period beyond which a leg without good ground steps on bad");
     visit.real("max_map_offset_m", self.max_map_offset_m, {0.0, 0.2},
                "the feet may correct the map's height by this");
   }

@@ -43,7 +43,7 @@ Vector3 FootholdPlanner::nominal_O_m(std::size_t leg, const estimation::RobotSta
 }
 
 Foothold FootholdPlanner::choose(const Vector3& nominal_O_m, const mapping::MapWindow* window,
-                                 UnseenGround unseen) const {
+                                 GroundRule ground) const {
   Foothold foothold;
   foothold.nominal_O_m = nominal_O_m;
   foothold.position_O_m = nominal_O_m;
@@ -58,8 +58,11 @@ Foothold FootholdPlanner::choose(const Vector3& nominal_O_m, const mapping::MapW
   query.margin_weight_m = config_.margin_weight_m;
   const Result<mapping::Foothold> found = mapping::find_foothold(*window, query);
   if (!found.ok()) {
-    const bool blind = unseen == UnseenGround::kAllowed && !classed(*window, nominal_O_m);
-    foothold.reason = blind ? FootholdReason::kUnseen : FootholdReason::kNone;
+    const bool unseen = ground != GroundRule::kGood && !classed(*window, nominal_O_m);
+    const bool forced = ground == GroundRule::kAny;
+    foothold.reason = unseen   ? FootholdReason::kUnseen
+                      : forced ? FootholdReason::kForced
+                               : FootholdReason::kNone;
     return foothold;
   }
   const mapping::Foothold& place = found.value();

@@ -13,8 +13,8 @@
 
 namespace surefoot::control {
 
-// Whether a foot may be set on ground that the map does not show.
-enum class UnseenGround : std::uint8_t { kRefused = 0, kAllowed };
+// What ground a foot may be set on. kAny: a step is due at any rate.
+enum class GroundRule : std::uint8_t { kGood = 0, kGoodOrUnseen, kAny };
 
 // Velocity command in the yaw-aligned frame of the body.
 struct VelocityCommand {
@@ -41,10 +41,10 @@ class FootholdPlanner {
   // Moves the nominal point to ground that can bear a foot. window: null when mapping is off.
   // reason kNone: nothing within the search radius; position is the nominal point, not to be used.
   // kUnseen: the same, but the map knows too little around the nominal point to class it, and
-  // unseen ground is allowed.
+  // unseen ground is allowed. kForced: the same on ground that the map calls bad.
   // Cost: a look-up, or a spiral over the search radius.
   Foothold choose(const Vector3& nominal_O_m, const mapping::MapWindow* window,
-                  UnseenGround unseen) const;
+                  GroundRule ground) const;
 
  private:
   FootholdConfig config_;

@@ -11,6 +11,7 @@ enum class FootholdReason : std::uint8_t {
   kNone,         // none within reach: the leg stays in stance, the body slows down
   kUnseen,       // nothing seen can bear a foot, but ground that nobody saw is allowed
   kMapOff,       // mapping disabled: the Raibert point, unchecked
+  kForced,       // bad ground, but a leg that stayed down would be dragged out of reach
 };
 
 }  // namespace surefoot::control

@@ -30,7 +30,7 @@ void Locomotion::reset(const ControlConfig& config, const robot::RobotModel& mod
   tracker_.reset(config.body, model);
   reference_ = BodyReference{};
   command_ = VelocityCommand{};
-  unseen_ = UnseenGround::kRefused;
+  ground_ = GroundRule::kGood;
   gait_running_ = false;
   halted_s_ = 0;
   blocked_s_ = 0;
@@ -86,9 +86,7 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
   const bool stepping = advance_gait(command.gait, step_s);
   tracker_.update(state, command_, step_s);
   reference_ = tracker_.reference();
-  const Vector2 off = (state.v_OB_m_s - reference_.v_OB_m_s).head<2>();
-  const bool off_balance = off.squaredNorm() > math::square(config_.foothold.balance_error_m_s);
-  unseen_ = off_balance ? UnseenGround::kAllowed : command.unseen;
+  ground_ = ground_rule(state, command.ground);
   map_offset_.update(state, legs_, window);
   bool blocked = false;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
@@ -100,6 +98,19 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
   plan_forces(state, plan);
   control_body(state);
   return joints_;
+}
+
+// Standing legs that miss a step are left behind by what the body does in a period.
+GroundRule Locomotion::ground_rule(const estimation::RobotState& state, GroundRule wanted) const {
+  const FootholdConfig& config = config_.foothold;
+  const Vector2 velocity = state.v_OB_m_s.head<2>();
+  const double period_s = gait_.config().period_s;
+  if (velocity.squaredNorm() * math::square(period_s) > math::square(config.max_drag_m)) {
+    return GroundRule::kAny;
+  }
+  const Vector2 off = velocity - reference_.v_OB_m_s.head<2>();
+  const bool off_balance = off.squaredNorm() > math::square(config.balance_error_m_s);
+  return off_balance ? GroundRule::kGoodOrUnseen : wanted;
 }
 
 // The clock stands still while all legs stand and no step is due, and starts from the beginning.
@@ -197,7 +208,7 @@ Foothold Locomotion::find_foothold(std::size_t leg, const estimation::RobotState
   const Vector3 nominal =
       footholds_.nominal_O_m(leg, state, command_, gait_.legs()[leg].remaining_s,
                              gait_.config().stance_s(), reference_.ground_z_m);
-  Foothold foothold = footholds_.choose(nominal, window, unseen_);
+  Foothold foothold = footholds_.choose(nominal, window, ground_);
   const bool from_map =
       foothold.reason == FootholdReason::kNominal || foothold.reason == FootholdReason::kMoved;
   if (from_map) foothold.position_O_m[2] += map_offset_.offset_m();

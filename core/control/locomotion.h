@@ -35,7 +35,7 @@ namespace surefoot::control {
 struct WalkCommand {
   VelocityCommand velocity;
   GaitKind gait = GaitKind::kStand;
-  UnseenGround unseen = UnseenGround::kRefused;  // while nothing forces a step
+  GroundRule ground = GroundRule::kGood;  // while nothing forces a step
 };
 
 class Locomotion {
@@ -66,6 +66,7 @@ class Locomotion {
   const BodyReference& reference() const { return reference_; }
 
  private:
+  GroundRule ground_rule(const estimation::RobotState& state, GroundRule wanted) const;
   // Whether legs may be lifted.
   bool advance_gait(GaitKind gait, double step_s);
   void advance_leg(std::size_t leg, const estimation::RobotState& state,
@@ -90,7 +91,7 @@ class Locomotion {
   BodyReference reference_;
   WholeBody whole_body_;
   VelocityCommand command_;  // ramped
-  UnseenGround unseen_ = UnseenGround::kRefused;
+  GroundRule ground_ = GroundRule::kGood;
   bool gait_running_ = false;
   double halted_s_ = 0;  // since the commanded speed has come down to zero in order to stand
   double blocked_s_ = 0;

@@ -14,7 +14,7 @@ void Estimator::reset(const EstimationConfig& config, const robot::RobotModel& m
   body_.reset(config.body);
   camera_ = CameraMount(model.tracking_camera);
   drift_.reset(config.tracking);
-  relocation_ = Relocation{};
+  relocation_.reset();
   state_ = RobotState{};
 }
 

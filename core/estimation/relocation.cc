@@ -7,6 +7,12 @@ constexpr TimeNs kLongestGap = milliseconds(200);
 
 }  // namespace
 
+void Relocation::reset() {
+  pairs_.clear();
+  pinned_ = false;
+  now_ = CameraPose{};
+}
+
 // An outage ends what was pinned before it.
 void Relocation::follow(const CameraPose& camera) {
   if (camera.stamp - now_.stamp > kLongestGap) pinned_ = false;

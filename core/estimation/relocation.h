@@ -19,6 +19,8 @@ namespace surefoot::estimation {
 
 class Relocation {
  public:
+  void reset();
+
   // A pose of the camera and the estimator's own pose at its stamp.
   void observe(const CameraPose& camera, const PoseAtStamp& own);
   // The same while there is no own pose: the robot lies.

@@ -82,8 +82,7 @@ TEST(Footholds, StayWhereTheGroundIsGoodAndTakeItsHeight) {
   FootholdPlanner planner;
   planner.reset(config(), model());
   const auto window = window_with_band(9.0, 9.1);
-  const Foothold foothold =
-      planner.choose(Vector3(1.0, 0.1, 0.5), window.get(), UnseenGround::kRefused);
+  const Foothold foothold = planner.choose(Vector3(1.0, 0.1, 0.5), window.get(), GroundRule::kGood);
   EXPECT_EQ(foothold.reason, FootholdReason::kNominal);
   EXPECT_EQ(foothold.position_O_m[0], 1.0);
   EXPECT_NEAR(foothold.position_O_m[2], 0.02 + 0.0175, 1e-6);
@@ -93,8 +92,7 @@ TEST(Footholds, MoveOffBadGroundByTheShorterWay) {
   FootholdPlanner planner;
   planner.reset(config(), model());
   const auto window = window_with_band(0.94, 1.02);
-  const Foothold foothold =
-      planner.choose(Vector3(1.0, 0.1, 0.0), window.get(), UnseenGround::kRefused);
+  const Foothold foothold = planner.choose(Vector3(1.0, 0.1, 0.0), window.get(), GroundRule::kGood);
   EXPECT_EQ(foothold.reason, FootholdReason::kMoved);
   EXPECT_GT(foothold.position_O_m[0], 1.02);
   EXPECT_LT(foothold.position_O_m[0], 1.05);
@@ -102,17 +100,30 @@ TEST(Footholds, MoveOffBadGroundByTheShorterWay) {
 
 // A trot that has to catch itself may step on ground that nobody has seen, never on bad ground that
 // was seen.
-TEST(Footholds, UnseenGroundIsTakenOnlyWhereAllowed) {
+TEST(Footholds, GroundRuleIsTakenOnlyWhereAllowed) {
   FootholdPlanner planner;
   planner.reset(config(), model());
   const auto window = window_with_band(0.8, 1.2);
   const Foothold seen =
-      planner.choose(Vector3(1.0, 0.1, 0.0), window.get(), UnseenGround::kAllowed);
+      planner.choose(Vector3(1.0, 0.1, 0.0), window.get(), GroundRule::kGoodOrUnseen);
   EXPECT_EQ(seen.reason, FootholdReason::kNone);
   const Foothold unseen =
-      planner.choose(Vector3(9.0, 0.1, 0.0), window.get(), UnseenGround::kAllowed);
+      planner.choose(Vector3(9.0, 0.1, 0.0), window.get(), GroundRule::kGoodOrUnseen);
   EXPECT_EQ(unseen.reason, FootholdReason::kUnseen);
   EXPECT_EQ(unseen.position_O_m, Vector3(9.0, 0.1, 0.0));
+}
+
+// A body too fast for a leg to wait.
+TEST(Footholds, BadGroundIsTakenOnlyWhereAStepIsDueAtAnyRate) {
+  FootholdPlanner planner;
+  planner.reset(config(), model());
+  const auto window = window_with_band(0.8, 1.2);
+  const Vector3 place(1.0, 0.1, 0.0);
+  const Foothold bad = planner.choose(place, window.get(), GroundRule::kAny);
+  EXPECT_EQ(bad.reason, FootholdReason::kForced);
+  EXPECT_EQ(bad.position_O_m, place);
+  EXPECT_EQ(planner.choose(Vector3(9.0, 0.1, 0.0), window.get(), GroundRule::kAny).reason,
+            FootholdReason::kUnseen);
 }
 
 // A cell with a height and nothing around it: the map cannot say what it is.
@@ -124,22 +135,21 @@ TEST(Footholds, GroundThatIsNotClassedCountsAsUnseen) {
     cell.traversability = mapping::Traversability::kUnknown;
   }
   const Vector3 place(1.0, 0.1, 0.0);
-  EXPECT_EQ(planner.choose(place, window.get(), UnseenGround::kAllowed).reason,
+  EXPECT_EQ(planner.choose(place, window.get(), GroundRule::kGoodOrUnseen).reason,
             FootholdReason::kUnseen);
-  EXPECT_EQ(planner.choose(place, window.get(), UnseenGround::kRefused).reason,
-            FootholdReason::kNone);
+  EXPECT_EQ(planner.choose(place, window.get(), GroundRule::kGood).reason, FootholdReason::kNone);
 }
 
 TEST(Footholds, AreRefusedWhereNothingInReachBearsAFoot) {
   FootholdPlanner planner;
   planner.reset(config(), model());
   const auto window = window_with_band(0.8, 1.2);
-  EXPECT_EQ(planner.choose(Vector3(1.0, 0.1, 0.0), window.get(), UnseenGround::kRefused).reason,
+  EXPECT_EQ(planner.choose(Vector3(1.0, 0.1, 0.0), window.get(), GroundRule::kGood).reason,
             FootholdReason::kNone);
   // Outside the window nothing is known.
-  EXPECT_EQ(planner.choose(Vector3(9.0, 0.1, 0.0), window.get(), UnseenGround::kRefused).reason,
+  EXPECT_EQ(planner.choose(Vector3(9.0, 0.1, 0.0), window.get(), GroundRule::kGood).reason,
             FootholdReason::kNone);
-  EXPECT_EQ(planner.choose(Vector3(1.0, 0.1, 0.0), nullptr, UnseenGround::kRefused).reason,
+  EXPECT_EQ(planner.choose(Vector3(1.0, 0.1, 0.0), nullptr, GroundRule::kGood).reason,
             FootholdReason::kMapOff);
 }
 

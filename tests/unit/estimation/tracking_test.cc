@@ -269,7 +269,7 @@ TEST(Drift, RefusesAndCountsWhatIsNoPose) {
   EXPECT_EQ(walk.observe(), Status::kOk);
 }
 
-// Walks for two seconds, falls a third of a second after `trusted`, and is carried away by its legs.
+// Walks for two seconds, falls a third of a second after `trusted`, and its legs carry it away.
 struct Fall {
   Walk walk;
   Relocation relocation;
