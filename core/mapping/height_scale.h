@@ -46,7 +46,7 @@ class MetreScale {
 };
 
 // In whole steps of on_filter_grid() from a base, for ground that rises less than kSpan_m: half the
-// memory and twice the lanes. The sum of four heights and the difference of two such sums still fit.
+// memory and twice the lanes. The sum of four heights and the difference of two such sums fit, too.
 class StepScale {
  public:
   using Number = std::int16_t;

@@ -142,7 +142,7 @@ void expect_same(const Filter& a, const Filter& b) {
 // where the ground comes to fit in steps, or no longer does, or fits with another base.
 TEST(FilterAgainstOpenCv, PartialUpdatesLeaveNoTrace) {
   Random random(3);
-  const auto below = [&random](std::uint32_t n) {
+  const auto place_below = [&random](std::uint32_t n) {
     return static_cast<std::int32_t>(random.below(n));
   };
   constexpr Ground kTurns[] = {{0, 0.3, true}, {0, 0.3, true}, {0.1, 0.35, true}, {0, 2, false}};
@@ -152,11 +152,11 @@ TEST(FilterAgainstOpenCv, PartialUpdatesLeaveNoTrace) {
   for (std::uint64_t round = 1; round <= 120; ++round) {
     const cv::Mat other = random_heights(100 + round, 20, kTurns[round / 3 % 4]);
     const bool all = round % 6 == 0;
-    const std::int32_t x_begin = all ? 0 : below(kSide);
-    const std::int32_t y_begin = all ? 0 : below(kSide);
+    const std::int32_t x_begin = all ? 0 : place_below(kSide);
+    const std::int32_t y_begin = all ? 0 : place_below(kSide);
     const auto extent = [&](std::int32_t begin) {
       const std::int32_t rest = kSide - begin;
-      return all ? rest : 1 + below(static_cast<std::uint32_t>(rest));
+      return all ? rest : 1 + place_below(static_cast<std::uint32_t>(rest));
     };
     const std::int32_t x_end = x_begin + extent(x_begin);
     const std::int32_t y_end = y_begin + extent(y_begin);
@@ -177,20 +177,25 @@ TEST(FilterAgainstOpenCv, PartialUpdatesLeaveNoTrace) {
   EXPECT_LT(in_steps, 100);
 }
 
+// Blocks, so that all classes come up.
+void add_blocks(cv::Mat& heights, std::uint64_t seed) {
+  Random random(seed);
+  for (int block = 0; block < 12; ++block) {
+    const auto x = static_cast<int>(random.below(kSide - 20));
+    const auto y = static_cast<int>(random.below(kSide - 20));
+    const auto rise_m = static_cast<float>(random.uniform(0.0, 0.2));
+    heights(cv::Rect(x, y, 16, 16)) += static_cast<double>(on_filter_grid(rise_m));
+  }
+}
+
 // Ground that fits in steps gives the classes it has beside one cell so low that it does not: what
 // that cell reaches is left out.
 TEST(FilterAgainstOpenCv, StepsAndMetresGiveTheSameClasses) {
   int seen[5] = {};
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-    // Blocks, so that all classes come up; noise, so that limits are met closely.
-    Random random(seed);
+    // With noise, so that limits are met closely.
     cv::Mat heights = random_heights(seed, static_cast<std::uint32_t>(seed % 10), {0, 0.02, true});
-    for (int block = 0; block < 12; ++block) {
-      const int x = static_cast<int>(random.below(kSide - 20));
-      const int y = static_cast<int>(random.below(kSide - 20));
-      heights(cv::Rect(x, y, 16, 16)) +=
-          static_cast<double>(on_filter_grid(static_cast<float>(random.uniform(0.0, 0.2))));
-    }
+    add_blocks(heights, seed);
     const auto in_steps = filtered(heights);
     ASSERT_TRUE(in_steps->uses_steps());
     heights.at<float>(kSide - 1, kSide - 1) = -5.0F;
