@@ -7,7 +7,7 @@
 // The camera must not have been away in between: what it believes after an outage may be a new
 // world. A step of its belief during the fall is an error of O from then on.
 //
-// Memory: 50 kB, a second of samples. Cost: one copy a sample. No allocation.
+// Memory: 41 kB, 1.3 s of samples at 200 Hz. Cost: one copy a sample. No allocation.
 #pragma once
 
 #include "core/base/ring_buffer.h"
