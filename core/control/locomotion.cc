@@ -100,15 +100,16 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
   return joints_;
 }
 
-// Standing legs that miss a step are left behind by what the body does in a period.
+// Standing legs that miss a step are left behind by what the body is to do in a period. What a shove
+// does to it is over soon: then a leg is better off on good ground.
 GroundRule Locomotion::ground_rule(const estimation::RobotState& state, GroundRule wanted) const {
   const FootholdConfig& config = config_.foothold;
-  const Vector2 velocity = state.v_OB_m_s.head<2>();
+  const Vector2 wanted_m_s = reference_.v_OB_m_s.head<2>();
   const double period_s = gait_.config().period_s;
-  if (velocity.squaredNorm() * math::square(period_s) > math::square(config.max_drag_m)) {
+  if (wanted_m_s.squaredNorm() * math::square(period_s) > math::square(config.max_drag_m)) {
     return GroundRule::kAny;
   }
-  const Vector2 off = velocity - reference_.v_OB_m_s.head<2>();
+  const Vector2 off = state.v_OB_m_s.head<2>() - wanted_m_s;
   const bool off_balance = off.squaredNorm() > math::square(config.balance_error_m_s);
   return off_balance ? GroundRule::kGoodOrUnseen : wanted;
 }
