@@ -100,8 +100,8 @@ const actuation::JointCommands& Locomotion::update(const estimation::RobotState&
   return joints_;
 }
 
-// Standing legs that miss a step are left behind by what the body is to do in a period. What a shove
-// does to it is over soon: then a leg is better off on good ground.
+// Standing legs that miss a step are left behind by what the body is to do in a period. What a
+// shove does to it is over soon: then a leg is better off on good ground.
 GroundRule Locomotion::ground_rule(const estimation::RobotState& state, GroundRule wanted) const {
   const FootholdConfig& config = config_.foothold;
   const Vector2 wanted_m_s = reference_.v_OB_m_s.head<2>();
