@@ -51,6 +51,12 @@ Foothold FootholdPlanner::choose(const Vector3& nominal_O_m, const mapping::MapW
     foothold.reason = FootholdReason::kMapOff;
     return foothold;
   }
+  // Ground that may be trusted unseen is no worse than what was seen beside it. A foot that is drawn
+  // in to the edge of the seen ground makes the stance too narrow for a shove.
+  if (ground != GroundRule::kGood && !classed(*window, nominal_O_m)) {
+    foothold.reason = FootholdReason::kUnseen;
+    return foothold;
+  }
   mapping::FootholdQuery query;
   query.x_O_m = nominal_O_m[0];
   query.y_O_m = nominal_O_m[1];
@@ -58,11 +64,8 @@ Foothold FootholdPlanner::choose(const Vector3& nominal_O_m, const mapping::MapW
   query.margin_weight_m = config_.margin_weight_m;
   const Result<mapping::Foothold> found = mapping::find_foothold(*window, query);
   if (!found.ok()) {
-    const bool unseen = ground != GroundRule::kGood && !classed(*window, nominal_O_m);
     const bool forced = ground == GroundRule::kAny;
-    foothold.reason = unseen   ? FootholdReason::kUnseen
-                      : forced ? FootholdReason::kForced
-                               : FootholdReason::kNone;
+    foothold.reason = forced ? FootholdReason::kForced : FootholdReason::kNone;
     return foothold;
   }
   const mapping::Foothold& place = found.value();

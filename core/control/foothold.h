@@ -13,7 +13,7 @@
 
 namespace surefoot::control {
 
-// What ground a foot may be set on. kAny: a step is due at any rate.
+// What ground a foot may be set on. kAny: any, unseen or bad, if there is no good one.
 enum class GroundRule : std::uint8_t { kGood = 0, kGoodOrUnseen, kAny };
 
 // Velocity command in the yaw-aligned frame of the body.
@@ -40,8 +40,8 @@ class FootholdPlanner {
 
   // Moves the nominal point to ground that can bear a foot. window: null when mapping is off.
   // reason kNone: nothing within the search radius; position is the nominal point, not to be used.
-  // kUnseen: the same, but the map knows too little around the nominal point to class it, and
-  // unseen ground is allowed. kForced: the same on ground that the map calls bad.
+  // kUnseen: the nominal point, for unseen ground is allowed and the map knows too little around it
+  // to class it. kForced: as kNone, but a step is due at any rate.
   // Cost: a look-up, or a spiral over the search radius.
   Foothold choose(const Vector3& nominal_O_m, const mapping::MapWindow* window,
                   GroundRule ground) const;

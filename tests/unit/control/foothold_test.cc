@@ -113,6 +113,22 @@ TEST(Footholds, GroundRuleIsTakenOnlyWhereAllowed) {
   EXPECT_EQ(unseen.position_O_m, Vector3(9.0, 0.1, 0.0));
 }
 
+// A foot drawn in to the edge of the seen ground would make the stance narrow.
+TEST(Footholds, UnseenGroundThatIsAllowedIsNotLeftForSeenGroundBesideIt) {
+  FootholdPlanner planner;
+  planner.reset(config(), model());
+  const auto window = window_with_band(0.0, 0.0);
+  const Vector3 place(1.0, 0.1, 0.0);
+  for (std::size_t i = 0; i < window->cells.size(); ++i) {
+    const double x_m = (20.5 + static_cast<double>(i % mapping::kWindowSide)) * 0.015;
+    if (x_m > 0.95) window->cells[i].traversability = mapping::Traversability::kUnknown;
+  }
+  EXPECT_EQ(planner.choose(place, window.get(), GroundRule::kGood).reason, FootholdReason::kMoved);
+  const Foothold unseen = planner.choose(place, window.get(), GroundRule::kGoodOrUnseen);
+  EXPECT_EQ(unseen.reason, FootholdReason::kUnseen);
+  EXPECT_EQ(unseen.position_O_m, place);
+}
+
 // A body too fast for a leg to wait.
 TEST(Footholds, BadGroundIsTakenOnlyWhereAStepIsDueAtAnyRate) {
   FootholdPlanner planner;
