@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "apps/common/config_root.h"
+#include "apps/common/statistics.h"
+#include "apps/surefoot-lab/stopwatch.h"
 #include "core/autonomy/map_task.h"
 #include "core/base/random.h"
 #include "core/mapping/line_of_sight.h"
@@ -27,17 +27,7 @@ template <class Work>
 double median_us(int rounds, Work&& work) {
   std::vector<double> times;
   for (int i = 0; i < rounds; ++i) times.push_back(work());
-  const auto middle = times.begin() + rounds / 2;
-  std::nth_element(times.begin(), middle, times.end());
-  return *middle;
-}
-
-template <class Work>
-double time_us(Work&& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin)
-      .count();
+  return median(times);
 }
 
 void print(const char* what, double us, const std::string& note) {
@@ -115,10 +105,9 @@ bool bench_filter(const mapping::TraversabilityLimits& limits, double cell_m) {
     theirs.push_back(time_us([&] { paper.run(in, limits, cell_m); }));
     return time_us(ours);
   });
-  std::nth_element(theirs.begin(), theirs.begin() + kRounds / 2, theirs.end());
   print("filter and traversability, 100 x 100 cells, all changed", mine,
         same(*filter, paper) ? "opening and gradient equal OpenCV's" : "DIFFERS from OpenCV");
-  print("OpenCV, one thread: opening, Sobel, maximum, thresholds", theirs[kRounds / 2], "");
+  print("OpenCV, one thread: opening, Sobel, maximum, thresholds", median(theirs), "");
   return same(*filter, paper);
 }
 
@@ -229,7 +218,7 @@ int bench_mapping() {
   if (!issues.empty()) return 3;
   const mapping::MappingConfig& map = config.autonomy.mapping;
   const mapping::TraversabilityLimits limits = class_limits(config);
-  std::fputs("mapping: medians, one thread\n", stdout);
+  std::fputs("mapping: medians of processor time, one thread\n", stdout);
   const bool equal = bench_filter(limits, map.cell_size_m);
   Downward camera(map, mapping::sensor_model(config.robot.depth_camera), limits);
   bench_insertion(camera);

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <opencv2/calib3d.hpp>
 #include <string>
 #include <vector>
 
+#include "apps/common/statistics.h"
+#include "apps/surefoot-lab/stopwatch.h"
 #include "core/stereo/matcher.h"
 #include "core/stereo/point_cloud.h"
 #include "core/stereo/rectifier.h"
@@ -23,28 +23,6 @@ constexpr int kRounds = 15;
 constexpr int kDisparities = 64;
 constexpr double kMaxWrongRatio = 1.3;
 
-struct Surroundings {
-  double contrast;
-  double grey_noise;
-  double right_gain;
-};
-constexpr Surroundings kSurroundings[] = {
-    {180, 2, 1.0}, {180, 2, 1.15}, {100, 2, 1.0}, {60, 2, 1.0}, {45, 3, 1.1}};
-
-template <class Work>
-double time_ms(Work&& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
-      .count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 cv::Mat picture(const stereo::GreyView& view) {
   return cv::Mat(view.height_px, view.width_px, CV_8U, const_cast<std::uint8_t*>(view.pixels));
 }
@@ -52,7 +30,7 @@ cv::Mat picture(const stereo::GreyView& view) {
 // One way of matching: its times, and its quality over all scenes.
 struct Contender {
   std::string name;
-  std::vector<double> times_ms;
+  std::vector<double> times_us;
   double density = 0;
   double wrong = 0;
   double rms_px = 0;
@@ -60,13 +38,13 @@ struct Contender {
   void judge(const std::int16_t* values, double scale, const tests::StereoScene& scene) {
     const tests::DisparityQuality quality =
         tests::judge_disparities(values, scale, scene.disparity_px, scene.width_px, kDisparities);
-    constexpr double kShare = 1.0 / std::size(kSurroundings);
+    constexpr double kShare = 1.0 / std::size(tests::kStereoSurroundings);
     density += kShare * quality.density;
     wrong += kShare * quality.wrong;
     rms_px += kShare * quality.rms_px;
   }
   void print(double reference_ms) const {
-    const double ms = median(times_ms);
+    const double ms = 1e-3 * median(times_us);
     std::fputs(fmt::format("  {:<22} {:>7.2f} {:>8.2f} {:>9.1f} {:>9.2f} {:>9.3f}\n", name, ms,
                            ms / reference_ms, 100 * density, 100 * wrong, rms_px)
                    .c_str(),
@@ -91,17 +69,17 @@ void bench_rest(const stereo::DisparityImage& disparities, const tests::StereoSc
       !ok(rectifier->configure(cameras, pair))) {
     return;
   }
-  std::vector<double> rectify_ms;
-  std::vector<double> points_ms;
+  std::vector<double> rectify_us;
+  std::vector<double> points_us;
   for (int i = 0; i < kRounds; ++i) {
-    rectify_ms.push_back(time_ms(
+    rectify_us.push_back(time_us(
         [&] { (void)rectifier->run(scene.left_view(), scene.right_view(), *left, *right); }));
-    points_ms.push_back(time_ms([&] {
+    points_us.push_back(time_us([&] {
       (void)stereo::make_points(disparities, pair, tests::recommended_points(), *cloud);
     }));
   }
   std::fputs(fmt::format("  rectifying both pictures {:.2f} ms, {} points {:.2f} ms\n",
-                         median(rectify_ms), cloud->size(), median(points_ms))
+                         1e-3 * median(rectify_us), cloud->size(), 1e-3 * median(points_us))
                  .c_str(),
              stdout);
 }
@@ -124,21 +102,16 @@ int bench_stereo() {
   ours.name = "core/stereo";
   tests::StereoScene scene;
   std::uint64_t seed = 0;
-  for (const Surroundings& around : kSurroundings) {
-    tests::StereoSceneOptions options;
-    options.seed = ++seed;
-    options.contrast = around.contrast;
-    options.grey_noise = around.grey_noise;
-    options.right_gain = around.right_gain;
-    scene = tests::render_stereo_scene(options);
+  for (const tests::StereoSurroundings& around : tests::kStereoSurroundings) {
+    scene = tests::render_stereo_scene(tests::options_in(around, ++seed));
     const cv::Mat left = picture(scene.left_view());
     const cv::Mat right = picture(scene.right_view());
     cv::Mat found_bm;
     cv::Mat found_sgbm;
     for (int i = 0; i < kRounds; ++i) {
-      block.times_ms.push_back(time_ms([&] { bm->compute(left, right, found_bm); }));
-      semi_global.times_ms.push_back(time_ms([&] { sgbm->compute(left, right, found_sgbm); }));
-      ours.times_ms.push_back(time_ms(
+      block.times_us.push_back(time_us([&] { bm->compute(left, right, found_bm); }));
+      semi_global.times_us.push_back(time_us([&] { sgbm->compute(left, right, found_sgbm); }));
+      ours.times_us.push_back(time_us(
           [&] { (void)matcher->match(scene.left_view(), scene.right_view(), *disparities); }));
     }
     block.judge(found_bm.ptr<std::int16_t>(), 16, scene);
@@ -149,7 +122,7 @@ int bench_stereo() {
       "stereo: 320 x 240 pixels, 64 disparities, five rendered pairs, one thread\n"
       "                         ms    of BM   valid %   wrong %    rms px\n",
       stdout);
-  const double reference_ms = median(block.times_ms);
+  const double reference_ms = 1e-3 * median(block.times_us);
   for (const Contender* contender : {&block, &semi_global, &ours}) contender->print(reference_ms);
   bench_rest(*disparities, scene);
   return ours.wrong <= kMaxWrongRatio * semi_global.wrong ? 0 : 3;

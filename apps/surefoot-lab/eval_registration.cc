@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/common/drawing.h"
+#include "apps/common/statistics.h"
+#include "apps/surefoot-lab/stopwatch.h"
 #include "tests/support/registration_parts.h"
 #include "tests/support/rocky_board.h"
 
@@ -28,12 +29,6 @@ struct Start {
 };
 constexpr std::array<Start, 2> kStarts{
     {{"near", 0.016, 1.4 * kRadPerDeg}, {"far", 0.048, 4.1 * kRadPerDeg}}};
-
-double processor_ms() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 // One board, scanned twice.
 struct Scans {
@@ -66,21 +61,15 @@ struct Outcome {
 // Clouds are built and aligned; the time is that of both.
 Outcome align(const Scans& scans, tests::Workbench& bench) {
   Outcome outcome;
-  const double begin_ms = processor_ms();
+  const double begin_us = processor_us();
   if (!bench.configure({})) return outcome;
   bench.fill(*bench.target, scans.target);
   bench.fill(*bench.source, scans.source);
   outcome.status = bench.align({{}, 0.1, 0.1});
-  outcome.ms = processor_ms() - begin_ms;
+  outcome.ms = 1e-3 * (processor_us() - begin_us);
   outcome.error_m = tests::distance_m(bench.result.X_TS, scans.truth);
   outcome.error_rad = tests::angle_rad(bench.result.X_TS, scans.truth);
   return outcome;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 nlohmann::ordered_json run_start(const Start& start, const RegistrationOptions& options,

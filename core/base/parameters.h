@@ -29,4 +29,22 @@ struct Range {
   double high;
 };
 
+// The visitor that applies describe()'s ranges to numbers. Written so that a NaN fails.
+//
+//   RangeCheck check;
+//   SwingParameters::describe(parameters, check);
+//   if (!check.good) return Status::kInvalid;
+struct RangeCheck {
+  void real(const char*, double value, Range range, const char*) {
+    good = good && value >= range.low && value <= range.high;
+  }
+  template <class Integer>
+  void integer(const char* key, const Integer& value, Range range, const char* doc) {
+    real(key, static_cast<double>(value), range, doc);
+  }
+  void boolean(const char*, const bool&, const char*) {}
+
+  bool good = true;
+};
+
 }  // namespace surefoot

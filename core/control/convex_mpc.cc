@@ -229,7 +229,7 @@ void ConvexMpc::condense_turning() {
         middle += angle_response_[k][i].transpose() * weighted;
       }
       const Matrix36 right = middle * turning_[j];
-      const Eigen::Matrix<double, 6, 6> block = turning_[i].transpose() * right;
+      const Matrix6 block = turning_[i].transpose() * right;
       for (std::size_t c = 0; c < HorizonQp::kComponents; ++c) {
         for (std::size_t d = 0; d < HorizonQp::kComponents; ++d) {
           const double value = block(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(d));

@@ -86,7 +86,7 @@ class ConvexMpc {
 
  private:
   using Row36 = Eigen::Matrix<double, 3, 6>;
-  using Wrench = Eigen::Matrix<double, 6, 1>;
+  using Wrench = Vector6;
   using StepForces = std::array<Vector3, robot::kLegs>;
 
   struct Step {

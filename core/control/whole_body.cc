@@ -17,6 +17,7 @@ using robot::velocity_row;
 constexpr double kLargestAngle_rad = 100.0;  // beyond any joint's turns
 constexpr double kLargestNumber = 1e6;       // in any unit of a task
 constexpr double kLargestResult = 1e30;
+constexpr double kRotationTolerance = 1e-3;
 // A foot's Jacobian counts as singular when a joint turn of 1 rad moves it less than this share of
 // the leg's length in some direction: a knee within 0.1 rad of straight.
 constexpr double kSingularShare = 0.025;
@@ -32,21 +33,17 @@ bool sane(const Eigen::MatrixBase<Derived>& m, double largest) {
   return true;
 }
 
-bool rotates(const Matrix3& r) {
-  constexpr double kTolerance = 1e-3;
-  const Matrix3 error = r.transpose() * r - Matrix3::Identity();
-  return sane(r, 2.0) && sane(error, kTolerance) && r.determinant() > 0.0;
-}
-
 bool usable(const WholeBodyState& state) {
   return sane(state.q_rad, kLargestAngle_rad) && sane(state.qd_rad_s, kLargestNumber) &&
          sane(state.p_OB_m, kLargestNumber) && sane(state.v_OB_m_s, kLargestNumber) &&
-         sane(state.angular_velocity_B_rad_s, kLargestNumber) && rotates(state.R_OB);
+         sane(state.angular_velocity_B_rad_s, kLargestNumber) &&
+         geometry::is_rotation(state.R_OB, kRotationTolerance);
 }
 
 bool usable(const BodyTask& body) {
   return sane(body.p_OB_m, kLargestNumber) && sane(body.v_OB_m_s, kLargestNumber) &&
-         sane(body.a_OB_m_s2, kLargestNumber) && rotates(body.R_OB) &&
+         sane(body.a_OB_m_s2, kLargestNumber) &&
+         geometry::is_rotation(body.R_OB, kRotationTolerance) &&
          sane(body.angular_velocity_O_rad_s, kLargestNumber) &&
          sane(body.angular_acceleration_O_rad_s2, kLargestNumber);
 }
@@ -242,7 +239,7 @@ void WholeBody::plan_accelerations(const WholeBodyState& state, const BodyTask& 
 // |B f - d|^2 weights.
 void WholeBody::find_forces(const LegTasks& legs) {
   using Map = Eigen::Matrix<double, 6, 12>;
-  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> trunk(mass_.topLeftCorner<6, 6>());
+  const Eigen::LLT<Matrix6> trunk(mass_.topLeftCorner<6, 6>());
   Vector6 weight;
   weight.head<3>().setConstant(config_.angular_relaxation_weight);
   weight.tail<3>().setConstant(config_.linear_relaxation_weight);

@@ -142,6 +142,16 @@ Matrix3 rotation_z(double yaw_rad) {
   return m;
 }
 
+bool is_rotation(const Matrix3& R, double tolerance) {
+  const Matrix3 error = R.transpose() * R - Matrix3::Identity();
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row) {
+      if (!(error(row, column) <= tolerance && error(row, column) >= -tolerance)) return false;
+    }
+  }
+  return R.determinant() > 0;
+}
+
 Quaternion interpolate(const Quaternion& a, const Quaternion& b, double s) {
   const Vector3 arc_rad = logarithm(conjugate(a) * b);
   return normalised(a * from_rotation_vector(arc_rad * s));

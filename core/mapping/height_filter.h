@@ -15,7 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/mapping/lanes.h"
+#include "core/math/lanes.h"
 
 namespace surefoot::mapping {
 

@@ -2,22 +2,14 @@
 
 #include <algorithm>
 
+#include "core/geometry/rotations.h"
 #include "core/mapping/line_of_sight.h"
 #include "core/math/elementary.h"
 
 namespace surefoot::mapping {
 namespace {
 
-bool is_rotation(const Matrix3& R) {
-  const Matrix3 product = R.transpose() * R;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      const double error = product(row, column) - (row == column ? 1.0 : 0.0);
-      if (!(error < 1e-3 && error > -1e-3)) return false;
-    }
-  }
-  return true;
-}
+constexpr double kRotationTolerance = 1e-3;
 
 bool is_mappable(const Vector3& p_O_m) {
   return mapping::is_mappable(p_O_m.x()) && mapping::is_mappable(p_O_m.y()) &&
@@ -100,7 +92,8 @@ Status Mapper::check(const hal::DepthFrame& frame, const CameraPose& X_OC,
   const Vector3& camera = X_OC.origin.m;
   const bool finite =
       math::is_finite(camera.x()) && math::is_finite(camera.y()) && math::is_finite(camera.z());
-  if (!finite || !is_rotation(X_OC.rotation.matrix)) return Status::kInvalid;
+  if (!finite || !geometry::is_rotation(X_OC.rotation.matrix, kRotationTolerance))
+    return Status::kInvalid;
   if (!is_mappable(camera) || !is_mappable(self.X_OB.origin.m)) return Status::kOutOfRange;
   return Status::kOk;
 }

@@ -1,30 +1,8 @@
 #include "core/mapping/mapping_config.h"
 
-#include <array>
-#include <cstddef>
-
 #include "core/math/elementary.h"
 
 namespace surefoot::mapping {
-namespace {
-
-// Applies describe()'s ranges. Written so that a NaN fails.
-class RangeCheck {
- public:
-  void real(const char*, const double& value, Range range, const char*) { check(value, range); }
-  template <class Integer>
-  void integer(const char*, const Integer& value, Range range, const char*) {
-    check(static_cast<double>(value), range);
-  }
-  void boolean(const char*, const bool&, const char*) {}
-  bool ok() const { return ok_; }
-
- private:
-  void check(double value, Range range) { ok_ = ok_ && value >= range.low && value <= range.high; }
-  bool ok_ = true;
-};
-
-}  // namespace
 
 DepthSensorModel sensor_model(const robot::DepthCameraSpecification& camera) {
   const double focal_px =
@@ -37,7 +15,7 @@ DepthSensorModel sensor_model(const robot::DepthCameraSpecification& camera) {
 Status validate(const MappingConfig& config) {
   RangeCheck check;
   MappingConfig::describe(config, check);
-  if (!check.ok() || config.max_sigma_m < config.min_sigma_m) return Status::kInvalid;
+  if (!check.good || config.max_sigma_m < config.min_sigma_m) return Status::kInvalid;
   return Status::kOk;
 }
 

@@ -11,5 +11,6 @@ using Vector2 = Eigen::Matrix<double, 2, 1>;
 using Vector3 = Eigen::Matrix<double, 3, 1>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix3 = Eigen::Matrix<double, 3, 3>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 }  // namespace surefoot

@@ -6,8 +6,6 @@
 
 namespace surefoot::registration {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 // A source surfel at its present place and the target surfel it is compared with.
 struct Pair {
   Vector3 p_m = Vector3::Zero();  // R p + T

@@ -19,21 +19,16 @@ constexpr double kConvergedCoarse_cells = 2e-2;
 constexpr double kMinSurfels = 0.4;
 // The threshold of observability is higher by this over the root of the number of pairs.
 constexpr double kRatioNoise = 4.0;
+constexpr double kRotationTolerance = 1e-6;
 // How far partners may lie apart, in cells of the level.
 constexpr double kReach_cells = 1.0;
 // Median of |x| of a normal distribution, inverted.
 constexpr double kMedianToSigma = 1.4826;
 
 bool is_pose(const SourcePose& pose) {
-  const Matrix3& r = pose.rotation.matrix;
-  for (int k = 0; k < 3; ++k) {
-    if (!math::is_finite(pose.origin.m[k])) return false;
-    for (int l = 0; l < 3; ++l) {
-      if (!math::is_finite(r(k, l))) return false;
-    }
-  }
-  const Matrix3 rest = r * r.transpose() - Matrix3::Identity();
-  return rest.cwiseAbs().maxCoeff() < 1e-6 && r.determinant() > 0;
+  return math::is_finite(pose.origin.m.x()) && math::is_finite(pose.origin.m.y()) &&
+         math::is_finite(pose.origin.m.z()) &&
+         geometry::is_rotation(pose.rotation.matrix, kRotationTolerance);
 }
 
 // (displacement, rotation) that leads from `from` to `to`.

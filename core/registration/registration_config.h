@@ -4,7 +4,9 @@
 #include <array>
 #include <cstdint>
 
+#include "core/base/parameters.h"
 #include "core/base/status.h"
+#include "core/math/elementary.h"
 #include "core/registration/cloud.h"
 
 namespace surefoot::registration {
@@ -26,9 +28,34 @@ struct RegistrationConfig {
   // that the noise of the normals alone would feign.
   double min_information_ratio = 1.3;
   double gate_sigma = 4.0;  // corrections beyond that many sigma of the prior: kOutOfRange
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("cell_m", self.cell_m, {0.001, 10.0}, "finest cells, of both clouds");
+    constexpr const char* kSteps = "steps of the level at most; 0 leaves it out";
+    visit.integer("max_iterations_1", self.max_iterations[0], {0, kMaxIterations}, kSteps);
+    visit.integer("max_iterations_2", self.max_iterations[1], {0, kMaxIterations}, kSteps);
+    visit.integer("max_iterations_4", self.max_iterations[2], {0, kMaxIterations}, kSteps);
+    visit.integer("max_iterations_8", self.max_iterations[3], {0, kMaxIterations}, kSteps);
+    visit.integer("max_pairs", self.max_pairs, {6, kMaxPairs}, "source surfels used per step");
+    visit.integer("min_pairs", self.min_pairs, {6, kMaxPairs}, "fewer give no result");
+    visit.real("min_overlap", self.min_overlap, {0.0, 1.0},
+               "share of the source surfels that must have a partner");
+    visit.real("max_normal_angle_rad", self.max_normal_angle_rad, {0.1, 0.5 * math::kPi},
+               "between the normals of partners");
+    visit.real("surface_error", self.surface_error, {0.0, 1.0},
+               "what a surfel misses of the surface, in cells");
+    visit.real("outlier_sigma", self.outlier_sigma, {1.0, 100.0},
+               "residuals well beyond it have no weight");
+    visit.real("min_information_ratio", self.min_information_ratio, {1.0, 1000.0},
+               "of a direction that counts as observed, to what noisy normals feign");
+    visit.real("gate_sigma", self.gate_sigma, {1.0, 1000.0},
+               "corrections beyond that many sigma of the prior are refused");
+  }
 };
 
-// kInvalid: a value is not finite or outside its range.
+// kInvalid: a value is not finite or outside describe()'s range, max_pairs below min_pairs, or
+// every level is left out.
 Status validate(const RegistrationConfig& config);
 
 }  // namespace surefoot::registration

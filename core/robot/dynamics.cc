@@ -281,7 +281,7 @@ Eigen::Matrix<double, 3, kVelocities> point_jacobian_B(std::size_t leg, const Po
 }
 
 bool MassFactor::factor(const MassMatrix& m) {
-  Eigen::Matrix<double, 6, 6> trunk = m.block<6, 6>(0, 0);
+  Matrix6 trunk = m.block<6, 6>(0, 0);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const Eigen::Index row = velocity_row(leg);
     leg_inverse_[leg] = m.block<3, 3>(row, row).inverse();
@@ -311,7 +311,7 @@ GeneralisedVector MassFactor::solve(const GeneralisedVector& force) const {
 
 void MassFactor::inverse(MassMatrix& result) const {
   // Column by column: solving for a matrix would have Eigen allocate.
-  Eigen::Matrix<double, 6, 6> trunk;
+  Matrix6 trunk;
   for (int i = 0; i < 6; ++i) trunk.col(i) = trunk_.solve(Vector6::Unit(i));
   result.block<6, 6>(0, 0) = trunk;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {

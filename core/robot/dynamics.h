@@ -164,7 +164,7 @@ class MassFactor {
  private:
   std::array<Matrix3, kLegs> leg_inverse_;
   std::array<Matrix6x3, kLegs> coupling_;  // M_0l M_ll^-1
-  Eigen::LLT<Eigen::Matrix<double, 6, 6>> trunk_;
+  Eigen::LLT<Matrix6> trunk_;
 };
 
 }  // namespace surefoot::robot

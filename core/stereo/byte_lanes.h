@@ -1,45 +1,20 @@
-// Sixteen bytes or eight 16-bit numbers at a time, in the compiler's own vector notation: SSE2 and
-// NEON, or plain instructions where there is neither. Integers only, so the results are the same
-// everywhere.
+// What matching needs beyond core/math/lanes.h: whole numbers of eight and of 16 bits.
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
+
+#include "core/math/lanes.h"
 
 namespace surefoot::stereo {
 
-static_assert(std::endian::native == std::endian::little,
-              "widen_low() and widen_high() rely on it");
+using Bytes = UnsignedByteLanes;
+using Words = ShortLanes;
 
-using Bytes = std::uint8_t __attribute__((vector_size(16)));
-using Words = std::int16_t __attribute__((vector_size(16)));
+inline constexpr std::size_t kBytes = kByteLanes;
+inline constexpr std::size_t kWords = kShortLanes;
 
-inline constexpr std::size_t kByteLanes = 16;
-inline constexpr std::size_t kWordLanes = 8;
-
-inline Bytes load_bytes(const std::uint8_t* from) {
-  Bytes lanes;
-  std::memcpy(&lanes, from, sizeof(lanes));
-  return lanes;
-}
-inline void store(Bytes lanes, std::uint8_t* to) { std::memcpy(to, &lanes, sizeof(lanes)); }
-inline Words load_words(const std::int16_t* from) {
-  Words lanes;
-  std::memcpy(&lanes, from, sizeof(lanes));
-  return lanes;
-}
-inline void store(Words lanes, std::int16_t* to) { std::memcpy(to, &lanes, sizeof(lanes)); }
-
-inline Bytes all_bytes(std::uint8_t value) { return Bytes{} + value; }
-inline Words all_words(std::int16_t value) { return Words{} + value; }
-
-inline Bytes smaller(Bytes a, Bytes b) { return a < b ? a : b; }
-inline Bytes larger(Bytes a, Bytes b) { return a > b ? a : b; }
-inline Words smaller(Words a, Words b) { return a < b ? a : b; }
-inline Words larger(Words a, Words b) { return a > b ? a : b; }
 // All bits set where a < b.
 inline Bytes mask_less(Bytes a, Bytes b) { return std::bit_cast<Bytes>(a < b); }
 inline Bytes mask_equal(Bytes a, Bytes b) { return std::bit_cast<Bytes>(a == b); }

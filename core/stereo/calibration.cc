@@ -11,6 +11,7 @@ namespace surefoot::stereo {
 namespace {
 
 constexpr double kMinBaseline_m = 0.001;
+constexpr double kRotationTolerance = 1e-6;
 
 // Radial factor and tangential shift at an undistorted direction.
 struct Distortion {
@@ -38,11 +39,6 @@ bool is_good(const CameraModel& camera) {
   }
   for (const double k : camera.distortion) good = good && k > -1e3 && k < 1e3;
   return good;
-}
-
-bool is_rotation(const Matrix3& R) {
-  const double error = (R * R.transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff();
-  return error < 1e-6 && R.determinant() > 0;
 }
 
 // Half of the turn from V to E: the square root of a unit quaternion with w >= 0.
@@ -105,7 +101,8 @@ Status rectify(const StereoCalibration& calibration, std::uint16_t width_px,
                      width_px >= 16 && width_px <= kMaxWidth_px && height_px >= 16 &&
                      height_px <= kMaxHeight_px;
   if (!sizes || !is_good(left) || !is_good(right) || !(focal_px >= 0.0 && focal_px < 1e5) ||
-      !is_rotation(calibration.R_EV) || !math::is_finite(calibration.p_EV_m.squaredNorm())) {
+      !geometry::is_rotation(calibration.R_EV, kRotationTolerance) ||
+      !math::is_finite(calibration.p_EV_m.squaredNorm())) {
     return Status::kInvalid;
   }
   const Matrix3 half = half_turn(calibration.R_EV);

@@ -39,11 +39,11 @@ Bytes narrow(Words low, Words high) {
 }
 
 Bytes smoothed(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below) {
-  const Bytes centre = load_bytes(here);
-  const Bytes up = load_bytes(above);
-  const Bytes down = load_bytes(below);
-  const Bytes left = load_bytes(here - 1);
-  const Bytes right = load_bytes(here + 1);
+  const Bytes centre = load_lanes(here);
+  const Bytes up = load_lanes(above);
+  const Bytes down = load_lanes(below);
+  const Bytes left = load_lanes(here - 1);
+  const Bytes right = load_lanes(here + 1);
   return narrow(weighted(widen_low(centre), widen_low(up), widen_low(down), widen_low(left),
                          widen_low(right)),
                 weighted(widen_high(centre), widen_high(up), widen_high(down), widen_high(left),
@@ -53,10 +53,10 @@ Bytes smoothed(const std::uint8_t* above, const std::uint8_t* here, const std::u
 template <std::size_t kFirst, std::size_t... kBit>
 Bytes census_byte(const CensusRow::RowPointers& rows, std::size_t u, Bytes centre,
                   std::index_sequence<kBit...>) {
-  return ((mask_less(load_bytes(rows[static_cast<std::size_t>(kOffsets[kFirst + kBit].v + 3)] +
+  return ((mask_less(load_lanes(rows[static_cast<std::size_t>(kOffsets[kFirst + kBit].v + 3)] +
                                 static_cast<std::ptrdiff_t>(u) + kOffsets[kFirst + kBit].u),
                      centre) &
-           all_bytes(1u << kBit)) |
+           all_lanes<std::uint8_t>(1u << kBit)) |
           ...);
 }
 
@@ -91,11 +91,11 @@ void CensusRow::advance(const GreyView& image, std::size_t v) {
   copy_row(image, static_cast<std::ptrdiff_t>(v + kCensusRadius_px), slot(3));
   const RowPointers rows = row_pointers();
   constexpr auto kBits = std::make_index_sequence<8>();
-  for (std::size_t u = 0; u < image.width_px; u += kByteLanes) {
+  for (std::size_t u = 0; u < image.width_px; u += kBytes) {
     const Bytes centre = smoothed(rows[2] + u, rows[3] + u, rows[4] + u);
-    store(census_byte<0>(rows, u, centre, kBits), planes_[0].data() + u);
-    store(census_byte<8>(rows, u, centre, kBits), planes_[1].data() + u);
-    store(census_byte<16>(rows, u, centre, kBits), planes_[2].data() + u);
+    store_lanes(census_byte<0>(rows, u, centre, kBits), planes_[0].data() + u);
+    store_lanes(census_byte<8>(rows, u, centre, kBits), planes_[1].data() + u);
+    store_lanes(census_byte<16>(rows, u, centre, kBits), planes_[2].data() + u);
   }
 }
 
@@ -103,27 +103,27 @@ void CensusRow::advance(const GreyView& image, std::size_t v) {
 void CensusRow::contrast(std::size_t width_px, std::uint8_t* out) {
   const RowPointers rows = row_pointers();
   // From kRowPad before the first pixel: the pads hold copies of the outermost pixels.
-  for (std::size_t u = 0; u < width_px + 2 * kRowPad; u += kByteLanes) {
-    Bytes low = load_bytes(rows[0] - kRowPad + u);
+  for (std::size_t u = 0; u < width_px + 2 * kRowPad; u += kBytes) {
+    Bytes low = load_lanes(rows[0] - kRowPad + u);
     Bytes high = low;
     for (std::size_t i = 1; i < kCensusRows; ++i) {
-      const Bytes grey = load_bytes(rows[i] - kRowPad + u);
+      const Bytes grey = load_lanes(rows[i] - kRowPad + u);
       low = smaller(low, grey);
       high = larger(high, grey);
     }
-    store(low, darkest_.data() + u);
-    store(high, brightest_.data() + u);
+    store_lanes(low, darkest_.data() + u);
+    store_lanes(high, brightest_.data() + u);
   }
-  for (std::size_t u = 0; u < width_px; u += kByteLanes) {
+  for (std::size_t u = 0; u < width_px; u += kBytes) {
     const std::uint8_t* dark = darkest_.data() + kRowPad + u - kCensusRadius_px;
     const std::uint8_t* bright = brightest_.data() + kRowPad + u - kCensusRadius_px;
-    Bytes low = load_bytes(dark);
-    Bytes high = load_bytes(bright);
+    Bytes low = load_lanes(dark);
+    Bytes high = load_lanes(bright);
     for (std::size_t i = 1; i < kCensusRows; ++i) {
-      low = smaller(low, load_bytes(dark + i));
-      high = larger(high, load_bytes(bright + i));
+      low = smaller(low, load_lanes(dark + i));
+      high = larger(high, load_lanes(bright + i));
     }
-    store(high - low, out + u);
+    store_lanes(high - low, out + u);
   }
 }
 

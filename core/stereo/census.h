@@ -14,7 +14,7 @@ namespace surefoot::stereo {
 inline constexpr std::size_t kCensusRadius_px = 3;
 inline constexpr std::size_t kCensusRows = 2 * kCensusRadius_px + 1;
 inline constexpr std::size_t kCensusPlanes = 3;  // bytes per pixel, each a plane of its own
-inline constexpr std::size_t kRowPad = kByteLanes;
+inline constexpr std::size_t kRowPad = kBytes;
 
 // Eight bits of every pixel of a row.
 using CensusPlane = std::array<std::uint8_t, kMaxWidth_px + kRowPad>;

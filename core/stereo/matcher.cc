@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/stereo/byte_lanes.h"
-#include "core/stereo/range_check.h"
 #include "core/stereo/smoothing.h"
 
 namespace surefoot::stereo {
@@ -27,9 +26,9 @@ using CensusPointers = std::array<const std::uint8_t*, kCensusPlanes>;
 
 // Hamming distances of one left pixel to sixteen right ones.
 inline Bytes match_costs(const CensusPixel& left, const CensusPointers& right, std::size_t at) {
-  const Bytes nibbles = nibble_counts(left[0] ^ load_bytes(right[0] + at)) +
-                        nibble_counts(left[1] ^ load_bytes(right[1] + at)) +
-                        nibble_counts(left[2] ^ load_bytes(right[2] + at));
+  const Bytes nibbles = nibble_counts(left[0] ^ load_lanes(right[0] + at)) +
+                        nibble_counts(left[1] ^ load_lanes(right[1] + at)) +
+                        nibble_counts(left[2] ^ load_lanes(right[2] + at));
   return (nibbles & 0x0F) + (nibbles >> 4);
 }
 
@@ -53,7 +52,7 @@ Status validate(const MatcherConfig& config) {
   RangeCheck check;
   MatcherConfig::describe(config, check);
   const std::int32_t last = config.min_disparity_px + config.disparities - 1;
-  const bool fits = check.good && last < 511 && config.disparities % kByteLanes == 0;
+  const bool fits = check.good && last < 511 && config.disparities % kBytes == 0;
   return fits && config.step_penalty <= config.jump_penalty ? Status::kOk : Status::kInvalid;
 }
 
@@ -100,27 +99,27 @@ void Matcher::aggregate_down(std::size_t columns) {
   for (std::size_t column = 0; column < columns; ++column) {
     const std::size_t u = first_column_ + column;
     const auto first_right = static_cast<std::size_t>(static_cast<std::int32_t>(u) - last_px_);
-    const CensusPixel left{all_bytes(left_.planes()[0][u]), all_bytes(left_.planes()[1][u]),
-                           all_bytes(left_.planes()[2][u])};
+    const CensusPixel left{all_lanes(left_.planes()[0][u]), all_lanes(left_.planes()[1][u]),
+                           all_lanes(left_.planes()[2][u])};
     const CensusPointers right{right_.planes()[0].data() + first_right,
                                right_.planes()[1].data() + first_right,
                                right_.planes()[2].data() + first_right};
     const std::uint8_t* from = above.costs.data() + column * stride_ + kPad;
     std::uint8_t* to = here.costs.data() + column * stride_ + kPad;
-    const Bytes least = all_bytes(above.least[column]);
-    const Step step{all_bytes(config_.step_penalty), least,
+    const Bytes least = all_lanes(above.least[column]);
+    const Step step{all_lanes(config_.step_penalty), least,
                     least + jump(grey_above[column], grey[column])};
     std::uint8_t* costs = costs_.data() + column * disparities;
     std::uint8_t* sums = sums_.data() + column * disparities;
-    Bytes low = all_bytes(255);
-    for (std::size_t k = 0; k < disparities; k += kByteLanes) {
+    Bytes low = all_lanes<std::uint8_t>(255);
+    for (std::size_t k = 0; k < disparities; k += kBytes) {
       const Bytes match = match_costs(left, right, k);
-      const Bytes cost = step.extend(load_bytes(from + k), load_bytes(from + k - 1),
-                                     load_bytes(from + k + 1), match);
+      const Bytes cost = step.extend(load_lanes(from + k), load_lanes(from + k - 1),
+                                     load_lanes(from + k + 1), match);
       low = smaller(low, cost);
-      store(match, costs + k);
-      store(cost, to + k);
-      store(cost, sums + k);
+      store_lanes(match, costs + k);
+      store_lanes(cost, to + k);
+      store_lanes(cost, sums + k);
     }
     here.least[column] = smallest(low);
   }
@@ -133,17 +132,17 @@ void Matcher::extend_along(std::size_t column, std::uint8_t jump_cost, PixelCost
   const std::uint8_t* costs = costs_.data() + column * disparities;
   std::uint8_t* sums = sums_.data() + column * disparities;
   std::uint8_t* own = path.costs.data() + kPad;
-  const Step step{all_bytes(config_.step_penalty), path.least, path.least + jump_cost};
-  Bytes low = all_bytes(255);
-  Bytes before = load_bytes(own - kByteLanes);
-  Bytes here = load_bytes(own);
-  for (std::size_t k = 0; k < disparities; k += kByteLanes) {
-    const Bytes after = load_bytes(own + k + kByteLanes);
+  const Step step{all_lanes(config_.step_penalty), path.least, path.least + jump_cost};
+  Bytes low = all_lanes<std::uint8_t>(255);
+  Bytes before = load_lanes(own - kBytes);
+  Bytes here = load_lanes(own);
+  for (std::size_t k = 0; k < disparities; k += kBytes) {
+    const Bytes after = load_lanes(own + k + kBytes);
     const Bytes cost = step.extend(here, lanes_before(before, here), lanes_after(here, after),
-                                   load_bytes(costs + k));
+                                   load_lanes(costs + k));
     low = smaller(low, cost);
-    store(cost, own + k);
-    store(load_bytes(sums + k) + cost, sums + k);
+    store_lanes(cost, own + k);
+    store_lanes(load_lanes(sums + k) + cost, sums + k);
     before = here;
     here = after;
   }
@@ -170,19 +169,19 @@ void Matcher::aggregate_along(std::size_t columns) {
 void Matcher::choose(std::size_t column) {
   const std::size_t disparities = config_.disparities;
   const std::uint8_t* sums = sums_.data() + column * disparities;
-  Bytes low = load_bytes(sums);
-  for (std::size_t k = kByteLanes; k < disparities; k += kByteLanes) {
-    low = smaller(low, load_bytes(sums + k));
+  Bytes low = load_lanes(sums);
+  for (std::size_t k = kBytes; k < disparities; k += kBytes) {
+    low = smaller(low, load_lanes(sums + k));
   }
   const std::uint8_t least = smallest(low);
   const std::int32_t bound = std::min(least + ((least * uniqueness_) >> 16), 254);
-  const Bytes least_lanes = all_bytes(least);
-  const Bytes bound_lanes = all_bytes(static_cast<std::uint8_t>(bound));
+  const Bytes least_lanes = all_lanes(least);
+  const Bytes bound_lanes = all_lanes(static_cast<std::uint8_t>(bound));
   Bytes rank = kFirstRanks;  // 255 - index
   Bytes found{};
   Bytes near{};
-  for (std::size_t k = 0; k < disparities; k += kByteLanes) {
-    const Bytes sum = load_bytes(sums + k);
+  for (std::size_t k = 0; k < disparities; k += kBytes) {
+    const Bytes sum = load_lanes(sums + k);
     found = larger(found, mask_equal(sum, least_lanes) & rank);
     near -= mask_equal(smaller(sum, bound_lanes), sum);
     rank -= 16;

@@ -36,7 +36,7 @@ class Matcher {
                MatchReport* report = nullptr);
 
  private:
-  static constexpr std::size_t kPad = kByteLanes;
+  static constexpr std::size_t kPad = kBytes;
   static constexpr std::size_t kStride = kMaxDisparities + kPad;
 
   // Costs of the path from above at every pixel of a row, with a guard between neighbours.
@@ -45,7 +45,7 @@ class Matcher {
     std::array<std::uint8_t, kMaxWidth_px> least;
   };
   struct PixelCosts {  // of a path along the row, with a guard at either end
-    alignas(kByteLanes) std::array<std::uint8_t, kMaxDisparities + 2 * kPad> costs;
+    alignas(kBytes) std::array<std::uint8_t, kMaxDisparities + 2 * kPad> costs;
     Bytes least;  // of all of them, in every lane
   };
 

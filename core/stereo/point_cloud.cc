@@ -1,7 +1,5 @@
 #include "core/stereo/point_cloud.h"
 
-#include "core/stereo/range_check.h"
-
 namespace surefoot::stereo {
 
 Status make_points(const DisparityImage& image, const RectifiedPair& pair,

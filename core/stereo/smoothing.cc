@@ -46,19 +46,19 @@ std::uint32_t median_filter(const DisparityImage& in, DisparityImage& out) {
   out.width_px = in.width_px;
   out.height_px = in.height_px;
   std::copy_n(in.values.begin(), in.pixel_count(), out.values.begin());
-  const Words missing = all_words(kNoDisparity);
+  const Words missing = all_lanes(kNoDisparity);
   for (std::size_t v = 1; v + 1 < height; ++v) {
-    for (std::size_t begin = 1; begin + 1 < width; begin += kWordLanes) {
+    for (std::size_t begin = 1; begin + 1 < width; begin += kWords) {
       // The last group overlaps the one before; pixels done twice come out the same.
-      const std::size_t u = std::min(begin, width - 1 - kWordLanes);
+      const std::size_t u = std::min(begin, width - 1 - kWords);
       Words around[9];
       for (std::size_t i = 0; i < 9; ++i) {
-        around[i] = load_words(in.row(v + i / 3 - 1) + u + i % 3 - 1);
+        around[i] = load_lanes(in.row(v + i / 3 - 1) + u + i % 3 - 1);
       }
       const Words own = around[4];
       const Words median = median_of_nine(around);
       const Words result = own == missing ? missing : median;
-      store(result, out.row(v) + u);
+      store_lanes(result, out.row(v) + u);
     }
   }
   std::uint32_t dropped = 0;
@@ -71,24 +71,24 @@ std::uint32_t median_filter(const DisparityImage& in, DisparityImage& out) {
 void smooth(const DisparityImage& in, std::size_t radius_px, DisparityImage& out) {
   const std::size_t width = in.width_px;
   const std::size_t height = in.height_px;
-  const Words missing = all_words(kNoDisparity);
-  const Words near = all_words(kSubpixels);
+  const Words missing = all_lanes(kNoDisparity);
+  const Words near = all_lanes<std::int16_t>(kSubpixels);
   for (std::size_t v = 0; v < height; ++v) {
     const std::size_t top = v > radius_px ? v - radius_px : 0;
     const std::size_t bottom = std::min(v + radius_px, height - 1);
     std::size_t u = 0;
-    for (; u < width; u += kWordLanes) {
+    for (; u < width; u += kWords) {
       // A group at the border takes a window cut to what all of its pixels have.
-      const std::size_t begin = std::min(u, width - kWordLanes);
+      const std::size_t begin = std::min(u, width - kWords);
       const std::size_t left = std::min(begin, radius_px);
-      const std::size_t right = std::min(width - kWordLanes - begin, radius_px);
-      const Words own = load_words(in.row(v) + begin);
+      const std::size_t right = std::min(width - kWords - begin, radius_px);
+      const Words own = load_lanes(in.row(v) + begin);
       Words sum{};
       Words count{};
       for (std::size_t row = top; row <= bottom; ++row) {
         const std::int16_t* values = in.row(row) + begin - left;
         for (std::size_t i = 0; i <= left + right; ++i) {
-          const Words value = load_words(values + i);
+          const Words value = load_lanes(values + i);
           const Words difference = value - own;
           // A missing value minus a large disparity would wrap round.
           const Words taken = (value != missing) & (difference <= near) & (difference >= -near);
@@ -96,7 +96,7 @@ void smooth(const DisparityImage& in, std::size_t radius_px, DisparityImage& out
           count -= taken;
         }
       }
-      for (std::size_t i = 0; i < kWordLanes; ++i) {
+      for (std::size_t i = 0; i < kWords; ++i) {
         if (own[i] == kNoDisparity) continue;
         const std::int32_t half = count[i] / 2;
         const std::int32_t rounded = (sum[i] < 0 ? sum[i] - half : sum[i] + half) / count[i];

@@ -199,8 +199,7 @@ class InteriorPoint {
   void iterate() {
     Matrix kkt = dense_.hessian;
     for (Index i = 0; i < n_ / 3; ++i) {
-      const Eigen::Matrix<double, 6, 1> ratio =
-          dual_.segment<6>(6 * i).cwiseQuotient(slack_.segment<6>(6 * i));
+      const Vector6 ratio = dual_.segment<6>(6 * i).cwiseQuotient(slack_.segment<6>(6 * i));
       kkt.block<3, 3>(3 * i, 3 * i) += side_.transpose() * ratio.asDiagonal() * side_;
     }
     factor_.compute(kkt);
@@ -231,7 +230,7 @@ class InteriorPoint {
 
   const Dense& dense_;
   Eigen::Matrix<double, 6, 3> side_;
-  Eigen::Matrix<double, 6, 1> limit_;
+  Vector6 limit_;
   Index n_;
   Vector f_, slack_, dual_, force_change_, slack_change_, dual_change_;
   Eigen::LLT<Matrix> factor_;

@@ -23,6 +23,24 @@ struct StereoSceneOptions {
   double right_gain = 1;  // brightness of the right camera
 };
 
+// What makes matching easy or hard, from plain to faint and noisy.
+struct StereoSurroundings {
+  double contrast;
+  double grey_noise;
+  double right_gain;
+};
+inline constexpr StereoSurroundings kStereoSurroundings[] = {
+    {180, 2, 1.0}, {180, 2, 1.15}, {100, 2, 1.0}, {60, 2, 1.0}, {45, 3, 1.1}};
+
+inline StereoSceneOptions options_in(const StereoSurroundings& around, std::uint64_t seed) {
+  StereoSceneOptions options;
+  options.seed = seed;
+  options.contrast = around.contrast;
+  options.grey_noise = around.grey_noise;
+  options.right_gain = around.right_gain;
+  return options;
+}
+
 struct StereoScene {
   std::uint16_t width_px = 0;
   std::uint16_t height_px = 0;

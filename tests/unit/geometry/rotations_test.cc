@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/math/elementary.h"
 #include "tests/unit/geometry/random_rotations.h"
@@ -50,6 +51,32 @@ TEST(Rotations, AgreeWithEigenAsOracle) {
             .toRotationMatrix();
     EXPECT_LT(distance(from_roll_pitch_yaw(roll, pitch, yaw), euler), 2e-15);
   }
+}
+
+TEST(Rotations, AreToldFromOtherMatrices) {
+  Random random(7);
+  for (int i = 0; i < 1000; ++i) {
+    const Matrix3 r = to_matrix(random_quaternion(random));
+    EXPECT_TRUE(is_rotation(r, 1e-14));
+    EXPECT_FALSE(is_rotation(-r, 1e-3));  // a reflection
+    const auto row = static_cast<int>(random.below(3));
+    const auto column = static_cast<int>(random.below(3));
+    // An entry off by e moves R' R by e times the entries of its row, the largest at least 0.57.
+    for (const double off : {1e-4, -1e-4}) {
+      Matrix3 wrong = r;
+      wrong(row, column) += off;
+      EXPECT_TRUE(is_rotation(wrong, 2.1e-4));
+      EXPECT_FALSE(is_rotation(wrong, 0.5e-4));
+    }
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::infinity(), 1e200}) {
+      Matrix3 wrong = r;
+      wrong(row, column) = bad;
+      EXPECT_FALSE(is_rotation(wrong, 1.0));
+    }
+  }
+  EXPECT_FALSE(is_rotation(Matrix3::Zero(), 1e-3));
+  EXPECT_FALSE(is_rotation(1.01 * Matrix3::Identity(), 1e-2));
 }
 
 TEST(Rotations, QuaternionsAndMatricesRoundTrip) {

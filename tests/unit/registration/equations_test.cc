@@ -84,7 +84,7 @@ TEST(Equations, OfNothingAreZero) {
 TEST(Observability, EigenvaluesAreThoseOfEigen) {
   Random random(3);
   for (int i = 0; i < 300; ++i) {
-    Eigen::Matrix<double, 6, 6> root;
+    Matrix6 root;
     for (int k = 0; k < 36; ++k) root(k / 6, k % 6) = random.normal();
     if (i % 3 == 0) root.col(i % 6).setZero();
     const Matrix6 a = root * root.transpose();

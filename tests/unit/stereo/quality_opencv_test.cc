@@ -14,24 +14,6 @@
 namespace surefoot::stereo {
 namespace {
 
-struct Pair {
-  double contrast;
-  double grey_noise;
-  double right_gain;
-};
-// From plain to faint and noisy.
-constexpr Pair kPairs[] = {
-    {180, 2, 1.0}, {180, 2, 1.15}, {100, 2, 1.0}, {60, 2, 1.0}, {45, 3, 1.1}};
-
-tests::StereoScene scene_of(const Pair& pair, std::uint64_t seed) {
-  tests::StereoSceneOptions options;
-  options.seed = seed;
-  options.contrast = pair.contrast;
-  options.grey_noise = pair.grey_noise;
-  options.right_gain = pair.right_gain;
-  return tests::render_stereo_scene(options);
-}
-
 cv::Mat picture(const std::vector<std::uint8_t>& grey) {
   return cv::Mat(240, 320, CV_8U, const_cast<std::uint8_t*>(grey.data()));
 }
@@ -42,8 +24,8 @@ TEST(Quality, AtMostTheWrongPixelsOfSgbm) {
   ASSERT_TRUE(ok(matcher->configure(tests::recommended_matcher())));
   const auto sgbm = cv::StereoSGBM::create(0, 64, 5, 8 * 25, 32 * 25, 1, 63, 10, 50, 1);
   std::uint64_t seed = 0;
-  for (const Pair& pair : kPairs) {
-    const tests::StereoScene scene = scene_of(pair, ++seed);
+  for (const tests::StereoSurroundings& around : tests::kStereoSurroundings) {
+    const tests::StereoScene scene = tests::render_stereo_scene(tests::options_in(around, ++seed));
     ASSERT_TRUE(ok(matcher->match(scene.left_view(), scene.right_view(), *ours)));
     cv::Mat theirs;
     sgbm->compute(picture(scene.left), picture(scene.right), theirs);
@@ -54,8 +36,8 @@ TEST(Quality, AtMostTheWrongPixelsOfSgbm) {
     std::printf(
         "contrast %3.0f noise %.0f gain %.2f: density %.3f wrong %.4f rms %.3f; "
         "SGBM %.3f %.4f %.3f\n",
-        pair.contrast, pair.grey_noise, pair.right_gain, mine.density, mine.wrong, mine.rms_px,
-        other.density, other.wrong, other.rms_px);
+        around.contrast, around.grey_noise, around.right_gain, mine.density, mine.wrong,
+        mine.rms_px, other.density, other.wrong, other.rms_px);
     EXPECT_LE(mine.wrong, other.wrong);
     EXPECT_LE(mine.rms_px, other.rms_px);
     EXPECT_GE(mine.density, other.density - 0.08);
@@ -69,8 +51,10 @@ TEST(Quality, PredictedNoiseIsTheRealOne) {
   auto cloud = std::make_unique<PointCloud>();
   ASSERT_TRUE(ok(matcher->configure(tests::recommended_matcher())));
   std::uint64_t seed = 10;
-  for (const Pair& pair : {kPairs[0], kPairs[2], kPairs[3]}) {
-    const tests::StereoScene scene = scene_of(pair, ++seed);
+  using tests::kStereoSurroundings;
+  for (const tests::StereoSurroundings& around :
+       {kStereoSurroundings[0], kStereoSurroundings[2], kStereoSurroundings[3]}) {
+    const tests::StereoScene scene = tests::render_stereo_scene(tests::options_in(around, ++seed));
     ASSERT_TRUE(ok(matcher->match(scene.left_view(), scene.right_view(), *ours)));
     RectifiedPair cameras;
     cameras.width_px = 320;
@@ -92,7 +76,7 @@ TEST(Quality, PredictedNoiseIsTheRealOne) {
       ++count;
     }
     const double ratio = std::sqrt(squares / count);
-    std::printf("contrast %3.0f: real noise is %.2f of the predicted\n", pair.contrast, ratio);
+    std::printf("contrast %3.0f: real noise is %.2f of the predicted\n", around.contrast, ratio);
     EXPECT_GT(ratio, 0.8);
     EXPECT_LT(ratio, 1.2);
   }

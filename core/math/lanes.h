@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace surefoot::mapping {
+namespace surefoot {
 
 static_assert(std::endian::native == std::endian::little);
 
@@ -18,6 +18,7 @@ using LaneMask = std::int32_t __attribute__((vector_size(16)));
 using ShortLanes = std::int16_t __attribute__((vector_size(16)));
 using UnsignedShortLanes = std::uint16_t __attribute__((vector_size(16)));
 using ByteLanes = std::int8_t __attribute__((vector_size(16)));
+using UnsignedByteLanes = std::uint8_t __attribute__((vector_size(16)));
 
 inline constexpr std::int32_t kLanes = 4;
 inline constexpr std::int32_t kShortLanes = 8;
@@ -41,6 +42,10 @@ template <>
 struct LanesOf<std::int8_t> {
   using Type = ByteLanes;
 };
+template <>
+struct LanesOf<std::uint8_t> {
+  using Type = UnsignedByteLanes;
+};
 
 template <class Number>
 typename LanesOf<Number>::Type load_lanes(const Number* from) {
@@ -52,13 +57,10 @@ template <class Number>
 void store_lanes(typename LanesOf<Number>::Type lanes, Number* to) {
   std::memcpy(to, &lanes, sizeof(lanes));
 }
-inline Lanes all_lanes(float a) { return Lanes{a, a, a, a}; }
-inline ShortLanes all_lanes(std::int16_t a) { return ShortLanes{a, a, a, a, a, a, a, a}; }
-inline UnsignedShortLanes all_lanes(std::uint16_t a) {
-  return UnsignedShortLanes{a, a, a, a, a, a, a, a};
-}
-inline ByteLanes all_lanes(std::int8_t a) {
-  return ByteLanes{a, a, a, a, a, a, a, a, a, a, a, a, a, a, a, a};
+inline Lanes all_lanes(float a) { return Lanes{a, a, a, a}; }  // the sum below would lose -0
+template <class Number>
+typename LanesOf<Number>::Type all_lanes(Number a) {
+  return typename LanesOf<Number>::Type{} + a;
 }
 
 template <class To, class From>
@@ -71,7 +73,8 @@ To as_lanes(From lanes) {
 inline LaneMask bits(Lanes lanes) { return as_lanes<LaneMask>(lanes); }
 inline Lanes from_bits(LaneMask mask) { return as_lanes<Lanes>(mask); }
 
-// As the scalar a < b ? a : b. No lane is NaN, and no lane is -0 (height_filter.h).
+// As the scalar a < b ? a : b. Where no lane is NaN or -0, the order of a and b does not
+// matter.
 template <class Numbers>
 Numbers smaller(Numbers a, Numbers b) {
   return a < b ? a : b;
@@ -111,4 +114,4 @@ inline ShortLanes first_masks(ByteLanes a) {
       __builtin_shufflevector(a, a, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7));
 }
 
-}  // namespace surefoot::mapping
+}  // namespace surefoot
