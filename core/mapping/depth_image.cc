@@ -73,6 +73,12 @@ void set_geometry(const hal::PinholeIntrinsics& intrinsics, std::int32_t least_s
   out.fy = intrinsics.fy_px / out.stride;
   out.cx = intrinsics.cx_px / out.stride;
   out.cy = intrinsics.cy_px / out.stride;
+  for (std::int32_t u = 0; u < out.width; ++u) {
+    out.across[static_cast<std::size_t>(u)] = (u - out.cx) / out.fx;
+  }
+  for (std::int32_t v = 0; v < out.height; ++v) {
+    out.down[static_cast<std::size_t>(v)] = (v - out.cy) / out.fy;
+  }
 }
 
 void copy_pixels(const hal::DepthFrame& frame, const SurfaceTest& test, float min_range,

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "core/mapping/mapping_config.h"
+#include "core/math/lanes.h"
 #include "hal/api/depth_camera_port.h"
 
 namespace surefoot::mapping {
@@ -22,8 +23,11 @@ struct DepthImage {
   double fy = 0;
   double cx = 0;
   double cy = 0;
-  float farthest_m = 0;                          // largest of nearest_m
-  std::array<float, kMaxPixels> z_m{};           // 0: no measurement
+  // Rays of one unit of depth: x in C of each column, y of each row.
+  std::array<double, hal::kMaxDepthWidth_px + kDoubleLanes> across{};
+  std::array<double, hal::kMaxDepthHeight_px> down{};
+  float farthest_m = 0;                                // largest of nearest_m
+  std::array<float, kMaxPixels + kDoubleLanes> z_m{};  // 0: no measurement
   std::array<float, kMaxPixels> nearest_m{};     // least z of the 3 x 3; 0: not all nine measured
   std::array<std::uint8_t, kMaxPixels> mixed{};  // 1: between two surfaces or alone
 

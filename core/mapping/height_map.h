@@ -123,6 +123,30 @@ class HeightMap {
     std::int32_t row_;
   };
 
+  // Quick access by place: columns and rows of kSide cells, counted from first().
+  class Places {
+   public:
+    constexpr explicit Places(HeightMap& map)
+        : map_(map),
+          column_(static_cast<std::uint32_t>(wrap(map.first_.ix))),
+          row_(static_cast<std::uint32_t>(wrap(map.first_.iy))) {}
+    constexpr MapCell& at(std::uint32_t place) const {
+      const std::uint32_t row = place / kSide;
+      return map_.cells_[fold(row_ + row) * kSide + fold(column_ + place - row * kSide)];
+    }
+
+   private:
+    static constexpr std::size_t fold(std::uint32_t i) { return i >= kSide ? i - kSide : i; }
+    HeightMap& map_;
+    std::uint32_t column_;
+    std::uint32_t row_;
+  };
+
+  // What first() is once the map is centred at `centre`.
+  static constexpr CellIndex corner(CellIndex centre) {
+    return {centre.ix - kSide / 2, centre.iy - kSide / 2};
+  }
+
   // Forgets everything; the map then covers kSide x kSide cells around `centre`.
   void reset(CellIndex centre) {
     for (MapCell& cell : cells_) cell = MapCell{};
@@ -189,9 +213,6 @@ class HeightMap {
     return static_cast<std::size_t>(remainder < 0 ? remainder + kSide : remainder);
   }
   static constexpr std::size_t slot(CellIndex i) { return wrap(i.iy) * kSide + wrap(i.ix); }
-  static constexpr CellIndex corner(CellIndex centre) {
-    return {centre.ix - kSide / 2, centre.iy - kSide / 2};
-  }
 
   std::array<MapCell, static_cast<std::size_t>(kSide) * kSide> cells_{};
   CellIndex first_;

@@ -235,8 +235,8 @@ void lower_ceilings(const Sight& sight, std::uint64_t phase, ControlMap& map,
     for (std::int32_t u = u_begin; u < image.width; u += stride) {
       const auto depth = static_cast<double>(image.z_m[image.at(u, v)]);
       if (!(depth > 0)) continue;
-      const Vector3 direction =
-          R_OC * Vector3((u - image.cx) / image.fx, (v - image.cy) / image.fy, 1.0);
+      const Vector3 direction = R_OC * Vector3(image.across[static_cast<std::size_t>(u)],
+                                               image.down[static_cast<std::size_t>(v)], 1.0);
       ray.lower(direction, std::min(depth, sight.sensor.max_range_m), report);
     }
   }

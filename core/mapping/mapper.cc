@@ -123,53 +123,42 @@ Status Mapper::integrate(const hal::DepthFrame& frame, const CameraPose& X_OC,
 void Mapper::gather(const CameraPose& X_OC, const SelfModel& self, IntegrationReport& report) {
   scan_.clear();
   const SelfFilter self_filter(self, config_.self_inflation_m);
-  const Matrix3& R_OC = X_OC.rotation.matrix;
-  const Vector3& camera = X_OC.origin.m;
   const Vector3& body = self.X_OB.origin.m;
-  const double size = config_.cell_size_m;
-  const CellIndex centre = cell_index(body.x(), body.y(), size);
-  const double max_z = body.z() + config_.max_height_above_body_m;
-  const double attitude2 = math::square(config_.attitude_noise_rad);
-  const double floor2 = math::square(config_.depth_noise_floor_m);
+  const CellIndex centre = cell_index(body.x(), body.y(), config_.cell_size_m);
+  const PointMaker maker(image_, X_OC, config_, sensor_, ControlMap::corner(centre));
+  const double max_z_O_m = body.z() + config_.max_height_above_body_m;
+  ScanPoints points;
   for (std::int32_t v = 0; v < image_.height; ++v) {
-    const Vector3 row = R_OC.col(1) * ((v - image_.cy) / image_.fy) + R_OC.col(2);
-    for (std::int32_t u = 0; u < image_.width; ++u) {
-      const std::size_t i = image_.at(u, v);
-      const auto z = static_cast<double>(image_.z_m[i]);
-      ++report.pixels;
-      if (!(z > 0) || z > sensor_.max_range_m) {
-        ++report.no_depth;
-        continue;
+    for (std::int32_t u = 0; u < image_.width; u += ScanPoints::kCount) {
+      const std::int32_t count = std::min(image_.width - u, ScanPoints::kCount);
+      maker.make(u, v, count, points);
+      for (std::int32_t i = 0; i < count; ++i) {
+        sort_in(points, static_cast<std::size_t>(i), image_.at(u + i, v), max_z_O_m, self_filter,
+                report);
       }
-      if (image_.mixed[i] != 0) {
-        ++report.mixed;
-        continue;
-      }
-      const Vector3 direction = R_OC.col(0) * ((u - image_.cx) / image_.fx) + row;
-      const Vector3 offset = direction * z;
-      const Vector3 p_O_m = camera + offset;
-      if (p_O_m.z() > max_z) {
-        ++report.too_high;
-        continue;
-      }
-      if (self_filter.covers(p_O_m)) {
-        ++report.self;
-        continue;
-      }
-      const CellIndex index = cell_index(p_O_m.x(), p_O_m.y(), size);
-      const std::int32_t dx = index.ix - centre.ix + kMapSide / 2;
-      const std::int32_t dy = index.iy - centre.iy + kMapSide / 2;
-      if (dx < 0 || dy < 0 || dx >= kMapSide || dy >= kMapSide) {
-        ++report.outside;
-        continue;
-      }
-      const double depth_variance =
-          math::square(z * z * sensor_.inverse_depth_sigma_per_m) + floor2;
-      const double variance = depth_variance * math::square(direction.z()) + 1e-8;
-      const double shared = attitude2 * (offset.x() * offset.x() + offset.y() * offset.y()) +
-                            math::square(config_.min_sigma_m);
-      if (ok(scan_.add(index, p_O_m.z(), variance, shared, config_.gate_sigma))) ++report.points;
     }
+  }
+}
+
+void Mapper::sort_in(const ScanPoints& points, std::size_t i, std::size_t pixel, double max_z_O_m,
+                     const SelfFilter& self_filter, IntegrationReport& report) {
+  const auto depth = static_cast<double>(image_.z_m[pixel]);
+  ++report.pixels;
+  if (!(depth > 0) || depth > sensor_.max_range_m) {
+    ++report.no_depth;
+  } else if (image_.mixed[pixel] != 0) {
+    ++report.mixed;
+  } else if (points.z_O_m[i] > max_z_O_m) {
+    ++report.too_high;
+  } else if (self_filter.covers(Vector3(points.x_O_m[i], points.y_O_m[i], points.z_O_m[i]))) {
+    ++report.self;
+  } else if (points.place[i] < 0) {
+    ++report.outside;
+  } else {
+    const CellPoint point{points.z_O_m[i], points.variance_m2[i], points.weight[i],
+                          points.shared_variance_m2[i]};
+    const double gate2 = math::square(config_.gate_sigma);
+    if (ok(scan_.add(static_cast<std::uint32_t>(points.place[i]), point, gate2))) ++report.points;
   }
 }
 
@@ -178,9 +167,10 @@ void Mapper::fuse(std::uint32_t now_ms, IntegrationReport& report) {
   const double least = math::square(config_.min_sigma_m);
   const double most = math::square(config_.max_sigma_m);
   report.cells_hit = static_cast<std::uint32_t>(scan_.size());
+  const ControlMap::Places places(map_);
   for (std::size_t i = 0; i < scan_.size(); ++i) {
     const ScanCell& hit = scan_[i];
-    MapCell& cell = *map_.find(hit.index);
+    MapCell& cell = places.at(hit.place);
     const double height = hit.height_m();
     const double variance = std::min(hit.variance_m2(), most);
     const MapCell fresh{.height_m = static_cast<float>(height),

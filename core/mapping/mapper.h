@@ -12,6 +12,7 @@
 #include "core/mapping/map_window.h"
 #include "core/mapping/mapping_config.h"
 #include "core/mapping/scan_cells.h"
+#include "core/mapping/scan_points.h"
 #include "core/mapping/self_filter.h"
 #include "hal/api/depth_camera_port.h"
 
@@ -75,6 +76,8 @@ class Mapper {
  private:
   Status check(const hal::DepthFrame& frame, const CameraPose& X_OC, const SelfModel& self) const;
   void gather(const CameraPose& X_OC, const SelfModel& self, IntegrationReport& report);
+  void sort_in(const ScanPoints& points, std::size_t i, std::size_t pixel, double max_z_O_m,
+               const SelfFilter& self_filter, IntegrationReport& report);
   void fuse(std::uint32_t now_ms, IntegrationReport& report);
 
   MappingConfig config_;

@@ -9,13 +9,9 @@ bool finite(const Vector3& v) {
   return math::is_finite(v.x()) && math::is_finite(v.y()) && math::is_finite(v.z());
 }
 
-double distance2_to_segment(const Vector3& p, const Vector3& a, const Vector3& b) {
-  const Vector3 ab = b - a;
-  const double length2 = ab.dot(ab);
-  const double along = length2 > 0 ? math::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
-  const Vector3 off = p - a - along * ab;
-  return off.dot(off);
-}
+using Axes = std::array<DoubleLanes, 3>;
+
+DoubleLanes dot(const Axes& a, const Axes& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 }  // namespace
 
@@ -44,11 +40,40 @@ SelfFilter::SelfFilter(const SelfModel& self, double inflation_m)
   all_ = {self.X_OB.origin.m - reach, self.X_OB.origin.m + reach};
   for (std::size_t i = 0; i < self.capsules.size(); ++i) {
     const SelfCapsule& capsule = self.capsules[i];
-    const Vector3 radius = Vector3::Constant(capsule.radius_m + inflation_m);
-    boxes_[i] = {capsule.a_O_m.cwiseMin(capsule.b_O_m) - radius,
-                 capsule.a_O_m.cwiseMax(capsule.b_O_m) + radius};
-    all_ = {all_.low.cwiseMin(boxes_[i].low), all_.high.cwiseMax(boxes_[i].high)};
+    const double radius = capsule.radius_m + inflation_m;
+    const Vector3 around = Vector3::Constant(radius);
+    const Box box{capsule.a_O_m.cwiseMin(capsule.b_O_m) - around,
+                  capsule.a_O_m.cwiseMax(capsule.b_O_m) + around};
+    all_ = {all_.low.cwiseMin(box.low), all_.high.cwiseMax(box.high)};
+    links_[i / kDoubleLanes].set(static_cast<int>(i % kDoubleLanes), capsule, box, radius);
   }
+  pairs_ = (self.capsules.size() + kDoubleLanes - 1) / kDoubleLanes;
+}
+
+void SelfFilter::LinkPair::set(int lane, const SelfCapsule& capsule, const Box& box,
+                               double radius_m) {
+  const Vector3 along = capsule.b_O_m - capsule.a_O_m;
+  const double length2 = along.dot(along);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    low[k][lane] = box.low[axis];
+    high[k][lane] = box.high[axis];
+    a[k][lane] = capsule.a_O_m[axis];
+    ab[k][lane] = along[axis];
+  }
+  inverse_length2[lane] = length2 > 0 ? 1.0 / length2 : 0.0;
+  radius2[lane] = radius_m * radius_m;
+}
+
+bool SelfFilter::LinkPair::covers(const Vector3& p) const {
+  const DoubleMask boxed = (low[0] <= p.x()) & (high[0] >= p.x()) & (low[1] <= p.y()) &
+                           (high[1] >= p.y()) & (low[2] <= p.z()) & (high[2] >= p.z());
+  if (!any(boxed)) return false;
+  const Axes ap{p.x() - a[0], p.y() - a[1], p.z() - a[2]};
+  const DoubleLanes share = dot(ap, ab) * inverse_length2;
+  const DoubleLanes along = larger(smaller(share, all_lanes(1.0)), all_lanes(0.0));
+  const Axes off{ap[0] - along * ab[0], ap[1] - along * ab[1], ap[2] - along * ab[2]};
+  return any(boxed & (dot(off, off) <= radius2));
 }
 
 bool SelfFilter::Box::covers(const Vector3& p) const {
@@ -66,11 +91,8 @@ bool SelfFilter::covers(const Vector3& p_O_m) const {
     in_trunk = in_trunk && size > 0 && p_B[i] >= -half && p_B[i] <= half;
   }
   if (in_trunk) return true;
-  for (std::size_t i = 0; i < self_.capsules.size(); ++i) {
-    if (!boxes_[i].covers(p_O_m)) continue;
-    const SelfCapsule& capsule = self_.capsules[i];
-    const double radius = capsule.radius_m + inflation_m_;
-    if (distance2_to_segment(p_O_m, capsule.a_O_m, capsule.b_O_m) <= radius * radius) return true;
+  for (std::size_t i = 0; i < pairs_; ++i) {
+    if (links_[i].covers(p_O_m)) return true;
   }
   return false;
 }

@@ -7,6 +7,7 @@
 #include "core/base/fixed_vector.h"
 #include "core/base/status.h"
 #include "core/mapping/integration.h"
+#include "core/math/lanes.h"
 #include "core/math/linear.h"
 
 namespace surefoot::mapping {
@@ -43,10 +44,26 @@ class SelfFilter {
     Vector3 high = Vector3::Zero();
     bool covers(const Vector3& p) const;
   };
+  // Two capsules side by side in lanes. One that is not set covers nothing.
+  struct LinkPair {
+    using Axes = std::array<DoubleLanes, 3>;
+    Axes low{};  // the capsules' boxes
+    Axes high{};
+    Axes a{};
+    Axes ab{};
+    DoubleLanes inverse_length2{};  // of ab; 0: a ball
+    DoubleLanes radius2 = all_lanes(-1.0);
+
+    void set(int lane, const SelfCapsule& capsule, const Box& box, double radius_m);
+    bool covers(const Vector3& p) const;
+  };
+  static_assert(kMaxSelfCapsules % kDoubleLanes == 0);
+
   const SelfModel& self_;
   double inflation_m_;
   Box all_;
-  std::array<Box, kMaxSelfCapsules> boxes_;
+  std::array<LinkPair, kMaxSelfCapsules / kDoubleLanes> links_;
+  std::size_t pairs_ = 0;
 };
 
 }  // namespace surefoot::mapping

@@ -15,12 +15,15 @@ static_assert(std::endian::native == std::endian::little);
 // A comparison gives lanes of whole numbers of the same size, -1: true, 0: false.
 using Lanes = float __attribute__((vector_size(16)));
 using LaneMask = std::int32_t __attribute__((vector_size(16)));
+using DoubleLanes = double __attribute__((vector_size(16)));
+using DoubleMask = std::int64_t __attribute__((vector_size(16)));
 using ShortLanes = std::int16_t __attribute__((vector_size(16)));
 using UnsignedShortLanes = std::uint16_t __attribute__((vector_size(16)));
 using ByteLanes = std::int8_t __attribute__((vector_size(16)));
 using UnsignedByteLanes = std::uint8_t __attribute__((vector_size(16)));
 
 inline constexpr std::int32_t kLanes = 4;
+inline constexpr std::int32_t kDoubleLanes = 2;
 inline constexpr std::int32_t kShortLanes = 8;
 inline constexpr std::int32_t kByteLanes = 16;
 
@@ -29,6 +32,10 @@ struct LanesOf {};
 template <>
 struct LanesOf<float> {
   using Type = Lanes;
+};
+template <>
+struct LanesOf<double> {
+  using Type = DoubleLanes;
 };
 template <>
 struct LanesOf<std::int16_t> {
@@ -57,7 +64,9 @@ template <class Number>
 void store_lanes(typename LanesOf<Number>::Type lanes, Number* to) {
   std::memcpy(to, &lanes, sizeof(lanes));
 }
-inline Lanes all_lanes(float a) { return Lanes{a, a, a, a}; }  // the sum below would lose -0
+// By themselves: the sum below would lose -0.
+inline Lanes all_lanes(float a) { return Lanes{a, a, a, a}; }
+inline DoubleLanes all_lanes(double a) { return DoubleLanes{a, a}; }
 template <class Number>
 typename LanesOf<Number>::Type all_lanes(Number a) {
   return typename LanesOf<Number>::Type{} + a;
@@ -72,6 +81,15 @@ To as_lanes(From lanes) {
 }
 inline LaneMask bits(Lanes lanes) { return as_lanes<LaneMask>(lanes); }
 inline Lanes from_bits(LaneMask mask) { return as_lanes<Lanes>(mask); }
+inline DoubleMask bits(DoubleLanes lanes) { return as_lanes<DoubleMask>(lanes); }
+inline DoubleLanes from_bits(DoubleMask mask) { return as_lanes<DoubleLanes>(mask); }
+
+inline bool any(DoubleMask mask) { return (mask[0] | mask[1]) != 0; }
+
+// Two floats, exactly.
+inline DoubleLanes load_widened(const float* from) {
+  return DoubleLanes{static_cast<double>(from[0]), static_cast<double>(from[1])};
+}
 
 // As the scalar a < b ? a : b. Where no lane is NaN or -0, the order of a and b does not
 // matter.
