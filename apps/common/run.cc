@@ -178,6 +178,7 @@ class Run {
     facts_.hash = executive.hash();
     facts_.samples_dropped = log_->dropped();
     facts_.counters = executive.counters();
+    facts_.map_frames_bounded = stack_.autonomy().map().counters().frames_bounded;
     facts_.tracking = stack_.autonomy().estimator().drift().counters();
   }
 

@@ -32,7 +32,8 @@ Json counters_json(const RunFacts& facts) {
           {"depth_invalid", facts.counters.depth_invalid},
           {"sends_refused", facts.counters.sends_refused},
           {"records_refused", facts.counters.records_refused},
-          {"samples_dropped", facts.samples_dropped}};
+          {"samples_dropped", facts.samples_dropped},
+          {"map_frames_bounded", facts.map_frames_bounded}};
 }
 
 Json jump_json(const JumpFigures& jump) {

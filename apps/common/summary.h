@@ -36,6 +36,7 @@ struct RunFacts {
   std::uint64_t hash = 0;
   std::uint64_t samples_dropped = 0;
   runtime::ExecutiveCounters counters;
+  std::uint64_t map_frames_bounded = 0;
   estimation::TrackingCounters tracking;
 };
 

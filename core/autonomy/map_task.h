@@ -15,12 +15,14 @@ struct MapTaskCounters {
   std::uint64_t frames_integrated = 0;
   std::uint64_t frames_without_pose = 0;  // stamp outside the pose history
   std::uint64_t frames_refused = 0;       // by the mapper: header, order, nothing usable
+  std::uint64_t frames_bounded = 0;       // left cells or rays to the next frame (kMaxLooks)
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("frames_integrated", self.frames_integrated);
     visit("frames_without_pose", self.frames_without_pose);
     visit("frames_refused", self.frames_refused);
+    visit("frames_bounded", self.frames_bounded);
   }
 };
 

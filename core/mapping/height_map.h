@@ -3,6 +3,7 @@
 // and by nothing else; where a cell lies in memory is invisible.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -100,7 +101,19 @@ class HeightMap {
     visit_row(*this, iy, ix_begin, ix_end, visit);
   }
 
-  // Quick access for loops around one cell of the map: |dx|, |dy| < kSide / 2, nullptr outside.
+  // The same, run by run: calls visit(ix, first cell, number of cells) in ascending ix.
+  template <class Visit>
+  void for_runs(std::int32_t iy, std::int32_t ix_begin, std::int32_t ix_end, Visit&& visit) {
+    if (ix_begin >= ix_end) return;
+    SUREFOOT_ASSERT(contains({ix_begin, iy}) && contains({ix_end - 1, iy}));
+    MapCell* row = &cells_[wrap(iy) * kSide];
+    const auto column = static_cast<std::int32_t>(wrap(ix_begin));
+    const std::int32_t count = std::min(ix_end - ix_begin, kSide - column);
+    visit(ix_begin, row + column, count);
+    if (ix_begin + count < ix_end) visit(ix_begin + count, row, ix_end - ix_begin - count);
+  }
+
+  // Quick access for loops around one cell of the map: |dx|, |dy| <= kSide / 2.
   class Around {
    public:
     constexpr Around(HeightMap& map, CellIndex anchor)
@@ -108,9 +121,15 @@ class HeightMap {
           anchor_(anchor),
           column_(static_cast<std::int32_t>(wrap(anchor.ix))),
           row_(static_cast<std::int32_t>(wrap(anchor.iy))) {}
+    constexpr bool contains(std::int32_t dx, std::int32_t dy) const {
+      return map_.contains({anchor_.ix + dx, anchor_.iy + dy});
+    }
     constexpr MapCell* find(std::int32_t dx, std::int32_t dy) const {
-      if (!map_.contains({anchor_.ix + dx, anchor_.iy + dy})) return nullptr;
-      return &map_.cells_[fold(row_ + dy) * kSide + fold(column_ + dx)];
+      return contains(dx, dy) ? &at(dx, dy) : nullptr;
+    }
+    // The cell must be inside.
+    constexpr MapCell& at(std::int32_t dx, std::int32_t dy) const {
+      return map_.cells_[fold(row_ + dy) * kSide + fold(column_ + dx)];
     }
 
    private:

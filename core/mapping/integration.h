@@ -13,6 +13,10 @@ inline constexpr std::int32_t kMapSide = 1000;
 inline constexpr std::int32_t kMaxCellsPerRay = 256;
 // Farthest cell from the camera that is examined for clearing, in cells: 256 x 1.5 cm = 3.8 m.
 inline constexpr std::int32_t kMaxClearRadius_cells = 256;
+// Cells that one frame looks at for clearing: 400 x 400 and a little more.
+inline constexpr std::uint32_t kMaxLooks = 163840;
+// Steps of all rays of one frame that bound unseen ground.
+inline constexpr std::int32_t kMaxCeilingSteps = 163840;
 
 using ControlMap = HeightMap<kMapSide>;
 using CameraPose = geometry::Pose<geometry::Odometry, geometry::DepthCamera>;
@@ -30,11 +34,14 @@ struct IntegrationReport {
   std::uint32_t cells_hit = 0;
   std::uint32_t cells_new = 0;
   std::uint32_t cells_fused = 0;
-  std::uint32_t cells_pending = 0;   // outliers waiting for confirmation
-  std::uint32_t cells_replaced = 0;  // outliers confirmed: the surface moved
-  std::uint32_t cells_doubted = 0;   // seen through, not yet cleared
+  std::uint32_t cells_pending = 0;    // outliers waiting for confirmation
+  std::uint32_t cells_replaced = 0;   // outliers confirmed: the surface moved
+  std::uint32_t cells_looked_at = 0;  // for clearing
+  std::uint32_t rows_put_off = 0;     // rows of cells left to the next frame: kMaxLooks
+  std::uint32_t cells_doubted = 0;    // seen through, not yet cleared
   std::uint32_t cells_cleared = 0;
-  std::uint32_t ceilings = 0;  // bounds set or tightened
+  std::uint32_t ceilings = 0;      // bounds set or tightened
+  std::uint32_t rays_put_off = 0;  // left to the next frame: kMaxCeilingSteps
 };
 
 }  // namespace surefoot::mapping

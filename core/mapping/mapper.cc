@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/geometry/rotations.h"
-#include "core/mapping/line_of_sight.h"
 #include "core/math/elementary.h"
 
 namespace surefoot::mapping {
@@ -46,6 +45,7 @@ Status Mapper::configure(const MappingConfig& config, const DepthSensorModel& se
   configured_ = true;
   stamp_ = TimeNs{};
   frames_ = 0;
+  turn_ = SightTurn{};
   map_.reset({0, 0});
   classifier_.reset(config, limits);
   return Status::kOk;
@@ -111,8 +111,8 @@ Status Mapper::integrate(const hal::DepthFrame& frame, const CameraPose& X_OC,
     const std::uint32_t now_ms = to_ms(frame.stamp);
     fuse(now_ms, counts);
     const Sight sight{image_, X_OC, config_, sensor_, now_ms};
-    clear_seen_through(sight, map_, counts);
-    lower_ceilings(sight, frames_, map_, counts);
+    clear_seen_through(sight, turn_, map_, counts);
+    lower_ceilings(sight, turn_, map_, counts);
     stamp_ = frame.stamp;
     ++frames_;
   }

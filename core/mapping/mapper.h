@@ -9,6 +9,7 @@
 #include "core/mapping/depth_image.h"
 #include "core/mapping/height_map.h"
 #include "core/mapping/integration.h"
+#include "core/mapping/line_of_sight.h"
 #include "core/mapping/map_window.h"
 #include "core/mapping/mapping_config.h"
 #include "core/mapping/scan_cells.h"
@@ -86,6 +87,7 @@ class Mapper {
   TimeNs stamp_;
   std::uint64_t frames_ = 0;
   HeightMap<kMapSide> map_;
+  SightTurn turn_;
   // Scratch of one call; never read across calls.
   DepthImage image_;
   ScanCells scan_;

@@ -84,11 +84,23 @@ inline Lanes from_bits(LaneMask mask) { return as_lanes<Lanes>(mask); }
 inline DoubleMask bits(DoubleLanes lanes) { return as_lanes<DoubleMask>(lanes); }
 inline DoubleLanes from_bits(DoubleMask mask) { return as_lanes<DoubleLanes>(mask); }
 
+// A bit for each lane, the first one's lowest.
+inline std::uint32_t lane_bits(LaneMask mask) {
+  LaneMask sum = mask & LaneMask{1, 2, 4, 8};
+  sum |= __builtin_shufflevector(sum, sum, 2, 3, 0, 1);
+  return static_cast<std::uint32_t>(sum[0] | sum[1]);
+}
+
 inline bool any(DoubleMask mask) { return (mask[0] | mask[1]) != 0; }
 
 // Two floats, exactly.
 inline DoubleLanes load_widened(const float* from) {
   return DoubleLanes{static_cast<double>(from[0]), static_cast<double>(from[1])};
+}
+// No lane below 0.
+inline Lanes square_root(Lanes a) {
+  return Lanes{__builtin_sqrtf(a[0]), __builtin_sqrtf(a[1]), __builtin_sqrtf(a[2]),
+               __builtin_sqrtf(a[3])};
 }
 
 // As the scalar a < b ? a : b. Where no lane is NaN or -0, the order of a and b does not
@@ -111,8 +123,9 @@ inline Lanes difference(Lanes a, Lanes b) { return a - b; }
 inline ShortLanes difference(ShortLanes a, ShortLanes b) {
   return as_lanes<ShortLanes>(as_lanes<UnsignedShortLanes>(a) - as_lanes<UnsignedShortLanes>(b));
 }
+inline Lanes magnitude(Lanes a) { return from_bits(bits(a) & 0x7FFFFFFF); }
 // |a - b|, which fits always.
-inline Lanes distance(Lanes a, Lanes b) { return from_bits(bits(a - b) & 0x7FFFFFFF); }
+inline Lanes distance(Lanes a, Lanes b) { return magnitude(a - b); }
 inline UnsignedShortLanes distance(ShortLanes a, ShortLanes b) {
   return as_lanes<UnsignedShortLanes>(difference(larger(a, b), smaller(a, b)));
 }

@@ -37,9 +37,12 @@ TEST(ScanPoints, AreThoseOfOnePixelAtATime) {
     }
     prepare(*frame, config, sensor, *image);
     CameraPose X_OC;
-    X_OC.rotation.matrix = geometry::from_roll_pitch_yaw(
-        random.uniform(-3, 3), random.uniform(-1.5, 1.5), random.uniform(-3, 3));
-    X_OC.origin.m = Vector3(random.uniform(-9e4, 9e4), random.uniform(-9e4, 9e4), 0.3);
+    const double roll_rad = random.uniform(-3, 3);
+    const double pitch_rad = random.uniform(-1.5, 1.5);
+    X_OC.rotation.matrix =
+        geometry::from_roll_pitch_yaw(roll_rad, pitch_rad, random.uniform(-3, 3));
+    const double x_O_m = random.uniform(-9e4, 9e4);
+    X_OC.origin.m = Vector3(x_O_m, random.uniform(-9e4, 9e4), 0.3);
     const CellIndex first =
         ControlMap::corner(cell_index(X_OC.origin.m.x(), X_OC.origin.m.y(), config.cell_size_m));
     const PointMaker maker(*image, X_OC, config, sensor, first);
