@@ -6,10 +6,17 @@
 namespace surefoot::apps {
 namespace {
 
+// Set down as the robot lies folded.
+sim::SimulatorConfig simulator_config(const Config& config) {
+  sim::SimulatorConfig result = config.sim;
+  result.start.leg_rad = config.autonomy.control.stand_up.folded_rad;
+  return result;
+}
+
 class SimulatorBackend final : public Backend {
  public:
   SimulatorBackend(const RunRequest& request, const Config& config)
-      : simulator_(config.robot, config.world, config.sim, request.seed) {}
+      : simulator_(config.robot, config.world, simulator_config(config), request.seed) {}
 
   hal::Board board() override { return simulator_.board(); }
   bool has_truth() const override { return true; }

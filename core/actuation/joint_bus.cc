@@ -76,6 +76,7 @@ Status JointBus::configure(const robot::RobotModel& model, const ActuationParame
 Status JointBus::configure_joint(const robot::RobotModel& model, std::size_t joint) {
   const robot::JointWiring& wiring = model.wiring[joint];
   const robot::Actuator& actuator = model.actuators[joint % robot::kJointsPerLeg];
+  const robot::JointRange range = model.joint_range(joint);
   Wire& wire = wires_[joint];
   wire.ranges = {.position_rad = wiring.position_range_rad,
                  .velocity_rad_s = wiring.velocity_range_rad_s,
@@ -87,7 +88,7 @@ Status JointBus::configure_joint(const robot::RobotModel& model, std::size_t joi
   const bool good_address = wiring.bus < hal::kMaxCanBuses && wiring.can_id >= 1 &&
                             wiring.can_id <= 0xFF;  // a reply names the drive in one byte
   const bool good_limits = math::is_finite(wiring.offset_rad) &&
-                           math::is_finite(actuator.min_rad) && math::is_finite(actuator.max_rad) &&
+                           math::is_finite(range.min_rad) && math::is_finite(range.max_rad) &&
                            math::is_finite(actuator.torque_limit_Nm) &&
                            actuator.torque_limit_Nm > 0.0;
   if (!valid(wire.ranges) || !good_scale || !good_address || !good_limits) return Status::kInvalid;
@@ -96,11 +97,11 @@ Status JointBus::configure_joint(const robot::RobotModel& model, std::size_t joi
   wire.can_id = wiring.can_id;
   wire.scale = wiring.direction * wiring.belt_ratio;
   wire.offset_rad = wiring.offset_rad;
-  wire.min_rad = actuator.min_rad + parameters_.soft_stop_margin_rad;
-  wire.max_rad = actuator.max_rad - parameters_.soft_stop_margin_rad;
+  wire.min_rad = range.min_rad + parameters_.soft_stop_margin_rad;
+  wire.max_rad = range.max_rad - parameters_.soft_stop_margin_rad;
   wire.torque_limit_Nm = actuator.torque_limit_Nm;
-  const double low = magnitude(wire.scale * actuator.min_rad + wire.offset_rad);
-  const double high = magnitude(wire.scale * actuator.max_rad + wire.offset_rad);
+  const double low = magnitude(wire.scale * range.min_rad + wire.offset_rad);
+  const double high = magnitude(wire.scale * range.max_rad + wire.offset_rad);
   const bool reachable = low <= wiring.position_range_rad && high <= wiring.position_range_rad;
   return reachable && wire.min_rad < wire.max_rad ? Status::kOk : Status::kOutOfRange;
 }

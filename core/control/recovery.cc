@@ -26,7 +26,9 @@ Lie lie_of(const Matrix3& R_OB, double upright_tilt_rad) {
   return R_OB(2, 1) >= 0.0 ? Lie::kRightDown : Lie::kLeftDown;
 }
 
-void Recovery::reset(const RecoveryConfig& config, const std::array<double, 3>& folded_rad) {
+void Recovery::reset(const RecoveryConfig& config, const robot::RobotModel& model,
+                     const std::array<double, 3>& folded_rad) {
+  model_ = model;
   *this = Recovery{};
   config_ = config;
   folded_rad_ = folded_rad;
@@ -87,9 +89,10 @@ void Recovery::set_fold_target() {
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     const bool abduction = stage_ != RecoveryStage::kFoldSpread;
     const bool hip = stage_ != RecoveryStage::kFoldOut;
-    if (abduction) to_rad_[robot::joint_index(leg, 0)] = robot::left_sign(leg) * folded_rad_[0];
-    if (hip) to_rad_[robot::joint_index(leg, 1)] = folded_rad_[1];
-    to_rad_[robot::joint_index(leg, 2)] = folded_rad_[2];
+    const std::array<double, 3> folded_rad = model_.pose_of(leg, folded_rad_);
+    if (abduction) to_rad_[robot::joint_index(leg, 0)] = folded_rad[0];
+    if (hip) to_rad_[robot::joint_index(leg, 1)] = folded_rad[1];
+    to_rad_[robot::joint_index(leg, 2)] = folded_rad[2];
   }
 }
 
@@ -138,10 +141,9 @@ void Recovery::set_roll_target() {
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     const bool is_left = robot::left_sign(leg) > 0;
     const bool is_low = is_left == (side_ == Lie::kLeftDown);
-    const std::array<double, 3>& pose = is_low ? keyframe.low_rad : keyframe.high_rad;
-    to_rad_[robot::joint_index(leg, 0)] = robot::left_sign(leg) * pose[0];
-    to_rad_[robot::joint_index(leg, 1)] = pose[1];
-    to_rad_[robot::joint_index(leg, 2)] = pose[2];
+    const std::array<double, 3> pose =
+        model_.pose_of(leg, is_low ? keyframe.low_rad : keyframe.high_rad);
+    for (std::size_t i = 0; i < pose.size(); ++i) to_rad_[robot::joint_index(leg, i)] = pose[i];
   }
 }
 

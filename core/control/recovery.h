@@ -47,7 +47,8 @@ enum class RecoveryStage : std::uint8_t {
 
 class Recovery {
  public:
-  void reset(const RecoveryConfig& config, const std::array<double, 3>& folded_rad);
+  void reset(const RecoveryConfig& config, const robot::RobotModel& model,
+             const std::array<double, 3>& folded_rad);
 
   // Forgets earlier tries: a fall from standing.
   void begin();
@@ -73,6 +74,7 @@ class Recovery {
   void command_blend();
 
   RecoveryConfig config_;
+  robot::RobotModel model_;
   std::array<double, 3> folded_rad_{};
   RecoveryStage stage_ = RecoveryStage::kLimp;
   double stage_s_ = 0;

@@ -30,8 +30,12 @@ void StandUp::start(const actuation::JointStates& joints) {
 
 void StandUp::start_folded() {
   elapsed_s_ = config_.fold_s;
-  const Vector3 folded(config_.folded_rad[0], config_.folded_rad[1], config_.folded_rad[2]);
-  start_rad_.fill(folded);
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) start_rad_[leg] = folded_rad(leg);
+}
+
+Vector3 StandUp::folded_rad(std::size_t leg) const {
+  const std::array<double, 3> pose = model_.pose_of(leg, config_.folded_rad);
+  return {pose[0], pose[1], pose[2]};
 }
 
 Vector3 StandUp::standing_foot_B_m(std::size_t leg, double height_m) const {
@@ -42,9 +46,9 @@ actuation::JointCommands StandUp::update(double step_s) {
   elapsed_s_ += step_s;
   const double fold = smooth(math::clamp(elapsed_s_ / config_.fold_s, 0.0, 1.0));
   const double rise = smooth(math::clamp((elapsed_s_ - config_.fold_s) / config_.rise_s, 0.0, 1.0));
-  const Vector3 folded(config_.folded_rad[0], config_.folded_rad[1], config_.folded_rad[2]);
   actuation::JointCommands commands;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    const Vector3 folded = folded_rad(leg);
     Vector3 q = start_rad_[leg] + (folded - start_rad_[leg]) * fold;
     if (rise > 0.0) {
       const Vector3 low = robot::foot_position_B_m(model_, leg, folded);

@@ -23,6 +23,8 @@ class StandUp {
   bool done() const { return elapsed_s_ >= config_.fold_s + config_.rise_s; }
 
  private:
+  Vector3 folded_rad(std::size_t leg) const;
+
   Vector3 standing_foot_B_m(std::size_t leg, double height_m) const;
 
   StandUpConfig config_;

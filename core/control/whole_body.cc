@@ -312,7 +312,8 @@ void WholeBody::limit(const WholeBodyState& state) {
     const auto i = static_cast<Eigen::Index>(joint);
     const double step =
         math::clamp(command_.q_rad[i], -config_.max_joint_step_rad, config_.max_joint_step_rad);
-    const double q = math::clamp(state.q_rad[i] + step, actuator.min_rad, actuator.max_rad);
+    const robot::JointRange range = model_.joint_range(joint);
+    const double q = math::clamp(state.q_rad[i] + step, range.min_rad, range.max_rad);
     angle_limited = angle_limited || q != state.q_rad[i] + command_.q_rad[i];
     command_.q_rad[i] = q;
     command_.qd_rad_s[i] = math::clamp(command_.qd_rad_s[i], -actuator.no_load_speed_rad_s,
@@ -332,11 +333,11 @@ void WholeBody::fall_back(const WholeBodyState& state, const robot::JointVector&
   command_ = WholeBodyCommand{};
   command_.force_O_N.fill(Vector3::Zero());
   for (std::size_t joint = 0; joint < robot::kJoints; ++joint) {
-    const robot::Actuator& actuator = model_.actuators[joint % robot::kJointsPerLeg];
+    const robot::JointRange range = model_.joint_range(joint);
     const auto i = static_cast<Eigen::Index>(joint);
     const double q =
         sane(state.q_rad.segment<1>(i), kLargestAngle_rad) ? state.q_rad[i] : last_rad[i];
-    command_.q_rad[i] = math::clamp(q, actuator.min_rad, actuator.max_rad);
+    command_.q_rad[i] = math::clamp(q, range.min_rad, range.max_rad);
   }
   qp_.reset();
 }

@@ -55,7 +55,7 @@ Wrench SpatialInertia::operator*(const Motion& motion) const {
 void Dynamics::reset(const RobotModel& model) {
   model_ = model;
   const auto& actuators = model.actuators;
-  set_link(0, model.trunk, 1.0, 0.0, Vector3::Zero());
+  set_link(0, model.trunk, 0.0, Vector3::Zero());
   LinkConstants& trunk = constants_[0];
   // The four abduction rotors lie symmetric to B's origin: their common centre is B's origin.
   const double rotors_kg = static_cast<double>(kLegs) * actuators[0].rotor_mass_kg;
@@ -71,10 +71,11 @@ void Dynamics::reset(const RobotModel& model) {
   trunk.centre_m = centre_m;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const double side = left_sign(leg);
-    set_link(link_of(leg, 0), model.abad, side, actuators[1].rotor_mass_kg,
+    set_link(link_of(leg, 0), model.link_of(leg, model.abad), actuators[1].rotor_mass_kg,
              Vector3(0.0, side * model.hip_offset_m, 0.0));
-    set_link(link_of(leg, 1), model.thigh, side, actuators[2].rotor_mass_kg, Vector3::Zero());
-    set_link(link_of(leg, 2), model.shank, side, 0.0, Vector3::Zero());
+    set_link(link_of(leg, 1), model.link_of(leg, model.thigh), actuators[2].rotor_mass_kg,
+             Vector3::Zero());
+    set_link(link_of(leg, 2), model.link_of(leg, model.shank), 0.0, Vector3::Zero());
   }
   for (std::size_t joint = 0; joint < kJointsPerLeg; ++joint) {
     armature_kg_m2_[joint] = actuators[joint].reflected_inertia_kg_m2();
@@ -82,14 +83,14 @@ void Dynamics::reset(const RobotModel& model) {
   update(MotionState{});
 }
 
-// A link of one side (-1 mirrors y) with a rotor as a point mass.
-void Dynamics::set_link(std::size_t link, const Link& data, double side, double rotor_kg,
+// A link with a rotor as a point mass.
+void Dynamics::set_link(std::size_t link, const Link& data, double rotor_kg,
                         const Vector3& rotor_place_m) {
   const auto& c = data.centre_of_mass_m;
   const auto& i = data.inertia_kg_m2;
-  const Vector3 centre_m(c[0], side * c[1], c[2]);
+  const Vector3 centre_m(c[0], c[1], c[2]);
   Matrix3 inertia;
-  inertia << i[0], side * i[3], i[4], side * i[3], i[1], side * i[5], i[4], side * i[5], i[2];
+  inertia << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
   LinkConstants& result = constants_[link];
   result.mass_kg = data.mass_kg + rotor_kg;
   result.centre_m = (data.mass_kg * centre_m + rotor_kg * rotor_place_m) / result.mass_kg;

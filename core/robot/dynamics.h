@@ -134,8 +134,7 @@ class Dynamics {
     SpatialInertia inertia;
   };
 
-  void set_link(std::size_t link, const Link& data, double side, double rotor_kg,
-                const Vector3& rotor_place_m);
+  void set_link(std::size_t link, const Link& data, double rotor_kg, const Vector3& rotor_place_m);
   void place_link(std::size_t link, std::size_t parent, const Matrix3& R_BL, const Vector3& axis_B,
                   const Vector3& p_B_m, double velocity_rad_s);
   static SpatialInertia in_B(const LinkConstants& link, const Matrix3& R_BL, const Vector3& p_B_m);

@@ -94,7 +94,7 @@ LegSolution solve_leg(const RobotModel& model, std::size_t leg, const Vector3& p
   if (reach != distance) status = Status::kOutOfRange;
 
   const double cos_knee = (reach * reach - thigh * thigh - shank * shank) / (2.0 * thigh * shank);
-  const double knee = math::acos(cos_knee);
+  const double knee = model.bend_sign(leg) * math::acos(cos_knee);
   const math::SinCos bend = math::sin_cos(knee);
   const double hip =
       math::atan2(p[0], depth) - math::atan2(shank * bend.sin, thigh + shank * bend.cos);

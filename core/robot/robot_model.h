@@ -4,8 +4,9 @@
 // Frames (docs/frames_and_units.md): B has its origin at the centre of the trunk's four abduction
 // joints, x forward, y left, z up. Legs are numbered FR, FL, HR, HL = 0..3, joints abad, hip, knee
 // = 0..2. All joint angles are zero with the legs straight down. Abduction turns about +x of B, hip
-// and knee about -y (a positive hip angle swings the foot forward). Link data is given for a LEFT
-// leg; a right leg mirrors y.
+// and knee about -y (a positive hip angle swings the foot forward). Link data, joint stops and poses
+// are given for the FRONT LEFT leg; a right leg mirrors y and, where the hind knees point forward, a
+// hind leg mirrors x.
 #pragma once
 
 #include <array>
@@ -169,6 +170,11 @@ struct TrackingCameraSpecification {
   }
 };
 
+struct JointRange {
+  double min_rad = 0;
+  double max_rad = 0;
+};
+
 struct RobotModel {
   Link trunk;
   std::array<double, 3> trunk_size_m{};  // box around the trunk, for contact and self filtering
@@ -179,6 +185,7 @@ struct RobotModel {
   double knee_offset_m = 0;   // hip to knee, outwards (y)
   double shank_length_m = 0;  // knee to centre of the foot sphere
   double foot_radius_m = 0;
+  bool hind_knees_forward = false;
   double thigh_radius_m = 0;  // capsules around the links, for contact and self filtering
   double shank_radius_m = 0;
   Link abad;  // joint frames: abduction, hip, knee
@@ -197,6 +204,33 @@ struct RobotModel {
     return trunk.mass_kg + 4.0 * (abad.mass_kg + thigh.mass_kg + shank.mass_kg + rotors);
   }
 
+  // +1: the leg is as the front ones along x, -1: mirrored. So is the sense of hip and knee: a knee
+  // is bent where its angle times this is positive.
+  double bend_sign(std::size_t leg) const {
+    return hind_knees_forward && !is_front(leg) ? -1.0 : 1.0;
+  }
+  // Joint angles stated for the front left leg, for this one.
+  std::array<double, kJointsPerLeg> pose_of(std::size_t leg,
+                                            const std::array<double, kJointsPerLeg>& pose) const {
+    return {left_sign(leg) * pose[0], bend_sign(leg) * pose[1], bend_sign(leg) * pose[2]};
+  }
+  // A link stated for the front left leg, for this one.
+  Link link_of(std::size_t leg, const Link& link) const {
+    const double x = bend_sign(leg);
+    const double y = left_sign(leg);
+    const auto& c = link.centre_of_mass_m;
+    const auto& i = link.inertia_kg_m2;
+    return {link.mass_kg,
+            {x * c[0], y * c[1], c[2]},
+            {i[0], i[1], i[2], x * y * i[3], x * i[4], y * i[5]}};
+  }
+  // Between the mechanical stops.
+  JointRange joint_range(std::size_t joint) const {
+    const Actuator& a = actuators[joint % kJointsPerLeg];
+    const bool turned = joint % kJointsPerLeg != 0 && bend_sign(joint / kJointsPerLeg) < 0;
+    return turned ? JointRange{-a.max_rad, -a.min_rad} : JointRange{a.min_rad, a.max_rad};
+  }
+
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.group("trunk", self.trunk);
@@ -208,6 +242,7 @@ struct RobotModel {
     visit.real("knee_offset_m", self.knee_offset_m, {-0.2, 0.2}, "hip to knee, outwards");
     visit.real("shank_length_m", self.shank_length_m, {0.02, 1.0}, "knee to foot centre");
     visit.real("foot_radius_m", self.foot_radius_m, {0.001, 0.1}, "foot sphere");
+    visit.boolean("hind_knees_forward", self.hind_knees_forward, "hind legs mirror the front ones");
     visit.real("thigh_radius_m", self.thigh_radius_m, {0.001, 0.2}, "capsule");
     visit.real("shank_radius_m", self.shank_radius_m, {0.001, 0.2}, "capsule");
     visit.group("abad", self.abad);

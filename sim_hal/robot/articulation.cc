@@ -28,12 +28,14 @@ void set_rotation(dBodyID body, const Matrix3& rotation) {
   dBodySetRotation(body, r);
 }
 
-// A link of one side: `side` -1 mirrors y.
-Vector3 mirrored(const std::array<double, 3>& v, double side) { return {v[0], side * v[1], v[2]}; }
+Vector3 centre(const robot::Link& link) {
+  return {link.centre_of_mass_m[0], link.centre_of_mass_m[1], link.centre_of_mass_m[2]};
+}
 
-Matrix3 mirrored_inertia(const std::array<double, 6>& i, double side) {
+Matrix3 inertia(const robot::Link& link) {
+  const auto& i = link.inertia_kg_m2;
   Matrix3 result;
-  result << i[0], side * i[3], i[4], side * i[3], i[1], side * i[5], i[4], side * i[5], i[2];
+  result << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
   return result;
 }
 
@@ -48,13 +50,13 @@ struct MassSum {
   Vector3 moment = Vector3::Zero();
   Matrix3 about_origin = Matrix3::Zero();
 
-  void add(double mass, const Vector3& centre, const Matrix3& inertia) {
+  void add(double mass, const Vector3& place, const Matrix3& about_place) {
     mass_kg += mass;
-    moment += mass * centre;
-    about_origin += inertia + point_inertia(mass, centre);
+    moment += mass * place;
+    about_origin += about_place + point_inertia(mass, place);
   }
-  Vector3 centre() const { return moment / mass_kg; }
-  Matrix3 about_centre() const { return about_origin - point_inertia(mass_kg, centre()); }
+  Vector3 middle() const { return moment / mass_kg; }
+  Matrix3 about_centre() const { return about_origin - point_inertia(mass_kg, middle()); }
 };
 
 double stop_torque(double q, double qd, double min_rad, double max_rad, double inertia, double h) {
@@ -132,13 +134,12 @@ void Articulation::set_mass(std::size_t body, double mass_kg, const Vector3& cen
 // The abduction motors' rotors sit in the trunk, at their joints.
 void Articulation::build_trunk() {
   MassSum sum;
-  sum.add(model_.trunk.mass_kg, mirrored(model_.trunk.centre_of_mass_m, 1.0),
-          mirrored_inertia(model_.trunk.inertia_kg_m2, 1.0));
+  sum.add(model_.trunk.mass_kg, centre(model_.trunk), inertia(model_.trunk));
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     sum.add(model_.actuators[0].rotor_mass_kg, robot::abduction_joint_B_m(model_, leg),
             Matrix3::Zero());
   }
-  set_mass(0, sum.mass_kg, sum.centre(), sum.about_centre());
+  set_mass(0, sum.mass_kg, sum.middle(), sum.about_centre());
   dBodySetPosition(bodies_[0], centres_[0].x(), centres_[0].y(), centres_[0].z());
   set_rotation(bodies_[0], Matrix3::Identity());
 }
@@ -167,11 +168,11 @@ void Articulation::build_leg(dWorldID world, std::size_t leg) {
     const std::size_t joint = robot::joint_index(leg, k);
     const std::size_t body = body_of(joint);
     MassSum sum;
-    sum.add(links[k]->mass_kg, mirrored(links[k]->centre_of_mass_m, side),
-            mirrored_inertia(links[k]->inertia_kg_m2, side));
+    const robot::Link link = model_.link_of(leg, *links[k]);
+    sum.add(link.mass_kg, centre(link), inertia(link));
     if (rotors[k] > 0) sum.add(rotors[k], rotor_places[k], Matrix3::Zero());
     const double armature_kg_m2 = model_.actuators[k].reflected_inertia_kg_m2();
-    set_mass(body, sum.mass_kg, sum.centre(), sum.about_centre());
+    set_mass(body, sum.mass_kg, sum.middle(), sum.about_centre());
     axis_inertia_[joint] = axes[k].dot(sum.about_origin * axes[k]) + armature_kg_m2;
     const Vector3 centre = origins[k] + centres_[body];
     dBodySetPosition(bodies_[body], centre.x(), centre.y(), centre.z());
@@ -191,8 +192,8 @@ void Articulation::build_leg(dWorldID world, std::size_t leg) {
 void Articulation::place(const StartPose& start) {
   std::array<robot::LegVector, robot::kLegs> legs_rad;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    legs_rad[leg] = robot::LegVector(robot::left_sign(leg) * start.leg_rad[0], start.leg_rad[1],
-                                     start.leg_rad[2]);
+    const std::array<double, robot::kJointsPerLeg> pose = model_.pose_of(leg, start.leg_rad);
+    legs_rad[leg] = robot::LegVector(pose[0], pose[1], pose[2]);
   }
   set_down(Matrix3::Identity(), legs_rad, 0.0, 0.0, start.drop_height_m);
 }
@@ -283,6 +284,7 @@ void Articulation::apply(const std::array<double, robot::kJoints>& motor_torque_
   apply_gyroscopic_torques();
   for (std::size_t joint = 0; joint < robot::kJoints; ++joint) {
     const robot::Actuator& actuator = model_.actuators[joint % robot::kJointsPerLeg];
+    const robot::JointRange range = model_.joint_range(joint);
     const double q = positions_[joint];
     const double qd = velocities_[joint];
     // Dry friction, rounded at zero speed; not steeper than one explicit step can carry.
@@ -291,7 +293,7 @@ void Articulation::apply(const std::array<double, robot::kJoints>& motor_torque_
     const double friction = -actuator.dry_friction_Nm * std::tanh(qd / rounding_rad_s) -
                             actuator.viscous_friction_Nm_s * qd;
     const double stop =
-        stop_torque(q, qd, actuator.min_rad, actuator.max_rad, axis_inertia_[joint], step_s_);
+        stop_torque(q, qd, range.min_rad, range.max_rad, axis_inertia_[joint], step_s_);
     dJointAddHingeTorque(hinges_[joint], motor_torque_Nm[joint] + friction + stop);
   }
 }

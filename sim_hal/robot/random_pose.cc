@@ -24,10 +24,10 @@ Matrix3 random_rotation(Random& random) {
 std::array<robot::LegVector, robot::kLegs> random_legs(const robot::RobotModel& model,
                                                        Random& random) {
   std::array<robot::LegVector, robot::kLegs> legs;
-  for (robot::LegVector& leg : legs) {
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     for (std::size_t i = 0; i < robot::kJointsPerLeg; ++i) {
-      const robot::Actuator& actuator = model.actuators[i];
-      leg[static_cast<Eigen::Index>(i)] = random.uniform(actuator.min_rad, actuator.max_rad);
+      const robot::JointRange range = model.joint_range(robot::joint_index(leg, i));
+      legs[leg][static_cast<Eigen::Index>(i)] = random.uniform(range.min_rad, range.max_rad);
     }
   }
   return legs;

@@ -53,7 +53,7 @@ estimation::RobotState lying(double roll_rad, const std::array<double, 3>& leg_r
 class World {
  public:
   World(const RecoveryConfig& config, estimation::RobotState start) : state(start) {
-    recovery.reset(config, kFolded_rad);
+    recovery.reset(config, robot::RobotModel{}, kFolded_rad);
     recovery.begin();
     recovery.start();
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "tests/support/little_dog.h"
 #include "tests/support/mini_cheetah.h"
 
 namespace surefoot::robot {
@@ -83,6 +84,48 @@ TEST(Kinematics, ATargetOnTheAbductionAxisStillGivesFiniteAngles) {
   const LegSolution solution = solve_leg(model, kHindRight, abduction_joint_B_m(model, kHindRight));
   EXPECT_EQ(solution.status, Status::kOutOfRange);
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(std::isfinite(solution.q_rad[i]));
+}
+
+// A robot whose hind legs mirror the front ones.
+TEST(Kinematics, HindLegsMirrorTheFrontOnesWhereTheirKneesPointForward) {
+  const RobotModel model = little_dog();
+  Random random(7);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const std::array<double, 3> pose{random.uniform(-0.6, 0.6), random.uniform(-1.2, 0.2),
+                                     random.uniform(0.3, 2.4)};
+    const auto foot = [&](std::size_t leg) {
+      const std::array<double, 3> q = model.pose_of(leg, pose);
+      return foot_position_B_m(model, leg, {q[0], q[1], q[2]});
+    };
+    const Vector3 front = foot(kFrontLeft);
+    EXPECT_LT((foot(kHindLeft) - Vector3(-front[0], front[1], front[2])).norm(), 1e-15);
+    EXPECT_LT((foot(kHindRight) - Vector3(-front[0], -front[1], front[2])).norm(), 1e-15);
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+      const std::array<double, 3> q = model.pose_of(leg, pose);
+      for (std::size_t i = 0; i < kJointsPerLeg; ++i) {
+        const JointRange range = model.joint_range(joint_index(leg, i));
+        EXPECT_TRUE(q[i] >= range.min_rad && q[i] <= range.max_rad);
+      }
+      if (0.0751 * std::cos(q[1]) + 0.102 * std::cos(q[1] + q[2]) < 0.01) continue;
+      const LegSolution solution = solve_leg(model, leg, foot(leg));
+      EXPECT_EQ(solution.status, Status::kOk);
+      EXPECT_LT((solution.q_rad - LegVector(q[0], q[1], q[2])).norm(), 1e-9);
+    }
+  }
+}
+
+// A body's inertia as seen in a mirror: the products with the mirrored axis change sign.
+TEST(Kinematics, LinksAreMirroredWithTheirLegs) {
+  const RobotModel model = little_dog();
+  const Link link{1.0, {1, 2, 3}, {10, 11, 12, 4, 5, 6}};
+  const Link front_right = model.link_of(kFrontRight, link);
+  EXPECT_EQ(front_right.centre_of_mass_m, (std::array<double, 3>{1, -2, 3}));
+  EXPECT_EQ(front_right.inertia_kg_m2, (std::array<double, 6>{10, 11, 12, -4, 5, -6}));
+  const Link hind_left = model.link_of(kHindLeft, link);
+  EXPECT_EQ(hind_left.centre_of_mass_m, (std::array<double, 3>{-1, 2, 3}));
+  EXPECT_EQ(hind_left.inertia_kg_m2, (std::array<double, 6>{10, 11, 12, -4, -5, 6}));
+  const Link trotter = full_mini_cheetah().link_of(kHindLeft, link);
+  EXPECT_EQ(trotter.inertia_kg_m2, link.inertia_kg_m2);
 }
 
 TEST(Kinematics, ShankAngularVelocityAgreesWithTheMovingKneeAndFoot) {

@@ -9,6 +9,7 @@
 #include "core/robot/dynamics.h"
 #include "sim_hal/robot/articulation.h"
 #include "sim_hal/robot/ode_runtime.h"
+#include "tests/support/little_dog.h"
 #include "tests/unit/sim_hal/sim_fixture.h"
 
 namespace surefoot::sim {
@@ -16,8 +17,7 @@ namespace {
 
 constexpr double kG = 9.81;
 
-robot::RobotModel bare_mini_cheetah() {
-  robot::RobotModel model = mini_cheetah();
+robot::RobotModel bare(robot::RobotModel model) {
   model.trunk.centre_of_mass_m = {0.01, -0.004, 0.006};
   for (robot::Actuator& actuator : model.actuators) {
     actuator.dry_friction_Nm = 0;
@@ -115,10 +115,9 @@ void integrate(robot::Dynamics& dynamics, robot::MotionState& state,
 }
 
 // Largest relative difference of what 4 ms of motion changed the generalised velocity by.
-double disagreement(std::uint64_t seed, double step_s) {
+double disagreement(const robot::RobotModel& model, std::uint64_t seed, double step_s) {
   Random random(seed);
   const World world;
-  const robot::RobotModel model = bare_mini_cheetah();
   StartPose start;
   start.leg_rad = {random.uniform(-0.6, 0.6), random.uniform(-1.5, 0.5), random.uniform(0.4, 2.4)};
   start.drop_height_m = 1.0;
@@ -152,17 +151,25 @@ double disagreement(std::uint64_t seed, double step_s) {
 }
 
 // ODE's integrator is of first order: the difference shrinks with its step, and by as much.
-TEST(DynamicsAgainstOde, ThrownRobotsMoveAlike) {
+void expect_like_motion(const robot::RobotModel& model, const char* name) {
   start_ode();
   double worst = 0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    const double coarse = disagreement(seed, 2e-5);
-    const double fine = disagreement(seed, 5e-6);
+    const double coarse = disagreement(model, seed, 2e-5);
+    const double fine = disagreement(model, seed, 5e-6);
     EXPECT_LT(fine, 1e-4) << seed;
     EXPECT_LT(fine, 0.35 * coarse) << seed;
     worst = std::max(worst, fine);
   }
-  std::printf("largest relative difference of the change of velocity: %.2e\n", worst);
+  std::printf("%s: largest relative difference of the change of velocity: %.2e\n", name, worst);
+}
+
+TEST(DynamicsAgainstOde, ThrownMiniCheetahsMoveAlike) {
+  expect_like_motion(bare(mini_cheetah()), "Mini-Cheetah");
+}
+
+TEST(DynamicsAgainstOde, ThrownLittleDogsMoveAlike) {
+  expect_like_motion(bare(robot::little_dog()), "LittleDog");
 }
 
 }  // namespace
