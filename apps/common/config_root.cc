@@ -212,6 +212,17 @@ fs::path config_folder() {
   return {};
 }
 
+namespace {
+
+void check_gait(const autonomy::AutonomyConfig& config, ConfigIssues& issues) {
+  if (!config.control.static_walk.enabled || !config.mission.jump) return;
+  issues.push_back({{"--mission", 0},
+                    "mission.jump",
+                    "true, but the robot walks one leg at a time (control.static_walk.enabled)"});
+}
+
+}  // namespace
+
 Config load_config(const RunRequest& request, const fs::path& folder, ConfigIssues& issues) {
   const std::pair<const char*, const std::string*> needed[] = {
       {"--robot", &request.robot}, {"--world", &request.world}, {"--mission", &request.mission}};
@@ -234,6 +245,7 @@ Config load_config_parts(const RunRequest& request, const fs::path& folder, Conf
   ConfigIssues read;
   ConfigReader::read(tree, config, read);
   if (read.empty()) check_motions(config.autonomy.motions, config.robot, read);
+  if (read.empty()) check_gait(config.autonomy, read);
   read = without_absent_groups(std::move(read), request, issues);
   issues.insert(issues.end(), read.begin(), read.end());
   return config;

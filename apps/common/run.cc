@@ -179,6 +179,7 @@ class Run {
     facts_.samples_dropped = log_->dropped();
     facts_.counters = executive.counters();
     facts_.map_frames_bounded = stack_.autonomy().map().counters().frames_bounded;
+    facts_.static_walk = stack_.autonomy().static_walk().counters();
     facts_.tracking = stack_.autonomy().estimator().drift().counters();
   }
 

@@ -33,7 +33,11 @@ Json counters_json(const RunFacts& facts) {
           {"sends_refused", facts.counters.sends_refused},
           {"records_refused", facts.counters.records_refused},
           {"samples_dropped", facts.samples_dropped},
-          {"map_frames_bounded", facts.map_frames_bounded}};
+          {"map_frames_bounded", facts.map_frames_bounded},
+          {"static_steps", facts.static_walk.steps},
+          {"static_steps_missed", facts.static_walk.missed},
+          {"static_steps_narrow", facts.static_walk.narrow},
+          {"static_steps_lowered", facts.static_walk.lowered}};
 }
 
 Json jump_json(const JumpFigures& jump) {

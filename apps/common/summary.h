@@ -11,6 +11,7 @@
 #include "apps/common/perceived_map.h"
 #include "apps/common/referee.h"
 #include "apps/common/run_measures.h"
+#include "core/control/static_walk.h"
 #include "core/runtime/executive.h"
 #include "core/runtime/statistics.h"
 #include "sim_hal/simulator.h"
@@ -38,6 +39,7 @@ struct RunFacts {
   runtime::ExecutiveCounters counters;
   std::uint64_t map_frames_bounded = 0;
   estimation::TrackingCounters tracking;
+  control::StaticWalkCounters static_walk;
 };
 
 std::string hex16(std::uint64_t value);

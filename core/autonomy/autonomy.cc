@@ -38,6 +38,7 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
       static_cast<std::uint32_t>(config.safety.drive_silence_s / tick_s_) + 1;
   const double search_limit_m = mapping::kMaxSearchRadius_cells * config.mapping.cell_size_m;
   if (config.control.foothold.search_radius_m > search_limit_m) return Status::kOutOfRange;
+  if (config.control.static_walk.enabled && config.mission.jump) return Status::kInvalid;
   const Status wired = bus_.configure(model, actuation);
   if (!ok(wired)) return wired;
   const mapping::TraversabilityLimits limits = mapping::traversability_limits(
@@ -55,9 +56,10 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   estimator_.reset(config.estimation, model, tick_s_);
   history_.clear();
   mission_.reset(config.mission, kBrakingShare * config.control.body.max_acceleration_m_s2);
-  recovery_.reset(config.control.recovery, config.control.stand_up.folded_rad);
+  recovery_.reset(config.control.recovery, model, config.control.stand_up.folded_rad);
   stand_up_.reset(config.control.stand_up, model, config.control.body.height_m);
   locomotion_.reset(config.control, model);
+  static_walk_.reset(config.control, model);
   for (const motions::Motion& motion : config_.motions) {
     if (check_motion(motion, model).fault != motions::MotionFault::kNone) return Status::kInvalid;
   }
@@ -86,7 +88,7 @@ void Autonomy::run_control() {
   facts.recovered = recovery_.done();
   facts.recovery_failed = recovery_.failed();
   facts.stand_up_done = stand_up_.done();
-  facts.at_rest = locomotion_.at_rest();
+  facts.at_rest = at_rest();
   facts.jump_refused = jump_pilot_.given_up();
   facts.fault = find_fault();
   mission_.update(state, facts, tick_s_);
@@ -135,7 +137,7 @@ StopReason Autonomy::find_fault() {
   if (mission_.phase() == MissionPhase::kRecover) return StopReason::kNone;
   if (is_tilted(estimator_.state())) return StopReason::kTilt;
   if (!walking_ready_) return StopReason::kNone;
-  if (locomotion_.blocked_s() > config_.safety.foothold_patience_s) return StopReason::kNoFoothold;
+  if (blocked_s() > config_.safety.foothold_patience_s) return StopReason::kNoFoothold;
   return StopReason::kNone;
 }
 
@@ -145,6 +147,7 @@ const mapping::MapWindow* Autonomy::window() const {
 
 // What the contact estimator needs to know of the plan.
 std::array<estimation::GaitPhase, robot::kLegs> Autonomy::gait_phases() const {
+  if (walks_statically()) return static_walk_.gait_phases();
   return jump_pilot_.jumps() ? jump_pilot_.jump().gait_phases() : locomotion_.gait_phases();
 }
 
@@ -152,11 +155,10 @@ std::array<estimation::GaitPhase, robot::kLegs> Autonomy::gait_phases() const {
 bool Autonomy::must_recover(const estimation::RobotState& state) const {
   const control::RecoveryConfig& config = config_.control.recovery;
   if (control::lie_of(state.R_OB, config.upright_tilt_rad) != control::Lie::kUpright) return true;
-  const std::array<double, 3>& folded = config_.control.stand_up.folded_rad;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    const std::array<double, 3> folded = model_.pose_of(leg, config_.control.stand_up.folded_rad);
     for (std::size_t i = 0; i < robot::kJointsPerLeg; ++i) {
-      const double target = i == 0 ? robot::left_sign(leg) * folded[i] : folded[i];
-      const double off = state.joints[robot::joint_index(leg, i)].position_rad - target;
+      const double off = state.joints[robot::joint_index(leg, i)].position_rad - folded[i];
       if (off > kFolded_rad || off < -kFolded_rad) return true;
     }
   }
@@ -224,6 +226,7 @@ void Autonomy::begin_walking(const estimation::RobotState& state) {
     estimator_.place(footing_O_m_ + over_ground_m);
   }
   locomotion_.start(estimator_.state());
+  static_walk_.start(estimator_.state());
   history_.clear();
   walking_ready_ = true;
   mapping::AssumedPad pad;
@@ -282,8 +285,27 @@ control::VelocityCommand Autonomy::avoiding(const estimation::RobotState& state)
 }
 
 // Locomotion, unless the pilot jumps.
+bool Autonomy::at_rest() const {
+  return walks_statically() ? static_walk_.at_rest() : locomotion_.at_rest();
+}
+
+double Autonomy::blocked_s() const {
+  return walks_statically() ? static_walk_.blocked_s() : locomotion_.blocked_s();
+}
+
+const std::array<control::LegStatus, robot::kLegs>& Autonomy::legs() const {
+  return walks_statically() ? static_walk_.legs() : locomotion_.legs();
+}
+
 void Autonomy::walk(const estimation::RobotState& state) {
   const bool walks = mission_.phase() == MissionPhase::kWalk;
+  if (walks_statically()) {
+    const control::WalkCommand command = walk_command(state);
+    commands_ =
+        static_walk_.update(state, window(), command.velocity,
+                            command.gait != control::GaitKind::kStand, command.ground, tick_s_);
+    return;
+  }
   const bool on_detour = walks && avoidance_.side() != 0;
   // What it goes round it does not jump on.
   if (on_detour && !jump_pilot_.jumps()) {
@@ -373,7 +395,7 @@ void Autonomy::report_obstacles(const estimation::RobotState& state) {
 void Autonomy::report_legs(const estimation::RobotState& state) {
   const std::array<estimation::GaitPhase, robot::kLegs> phases = gait_phases();
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    const control::LegStatus& status = locomotion_.legs()[leg];
+    const control::LegStatus& status = legs()[leg];
     LegTelemetry& telemetry = outputs_.telemetry.legs[leg];
     telemetry.stance_planned = phases[leg].stance_planned;
     telemetry.contact = state.feet[leg].in_contact;
@@ -397,6 +419,7 @@ void Autonomy::report_jump() {
 }
 
 bool Autonomy::begin_mpc(const TickInputs& inputs) {
+  if (walks_statically()) return false;
   if (!walking_ready_ || !locomotion_acts() || jump_pilot_.jumps()) return false;
   locomotion_.plan(estimator_.state(), mpc_.problem());
   mpc_.release(inputs.stamp);

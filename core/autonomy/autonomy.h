@@ -17,6 +17,7 @@
 #include "core/control/locomotion.h"
 #include "core/control/recovery.h"
 #include "core/control/stand_up.h"
+#include "core/control/static_walk.h"
 #include "core/estimation/estimator.h"
 #include "core/obstacles/avoidance.h"
 
@@ -50,6 +51,7 @@ class Autonomy {
   const Mission& mission() const { return mission_; }
   const estimation::Estimator& estimator() const { return estimator_; }
   const MapTask& map() const { return map_; }
+  const control::StaticWalk& static_walk() const { return static_walk_; }
   const actuation::JointBus& joint_bus() const { return bus_; }
 
  private:
@@ -58,6 +60,10 @@ class Autonomy {
   StopReason find_fault();
   void act(const estimation::RobotState& state);
   bool locomotion_acts() const;
+  bool walks_statically() const { return config_.control.static_walk.enabled; }
+  bool at_rest() const;
+  double blocked_s() const;
+  const std::array<control::LegStatus, robot::kLegs>& legs() const;
   control::WalkCommand walk_command(const estimation::RobotState& state);
   control::VelocityCommand avoiding(const estimation::RobotState& state);
   void walk(const estimation::RobotState& state);
@@ -88,7 +94,8 @@ class Autonomy {
   Mission mission_;
   control::StandUp stand_up_;
   control::Recovery recovery_;
-  control::Locomotion locomotion_;
+  control::Locomotion locomotion_;    // one of these two walks, as the robot's file says
+  control::StaticWalk static_walk_;
   JumpPilot jump_pilot_;
   MpcTask mpc_;
   obstacles::Avoidance avoidance_;

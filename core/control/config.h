@@ -138,6 +138,28 @@ struct MpcConfig {
   }
 };
 
+// One leg in the air at a time (static_walk.h), instead of the gaits.
+struct StaticWalkConfig {
+  bool enabled = false;
+  double shift_s = 0;          // of the trunk, between steps: what the stride reckons with
+  double shift_speed_m_s = 0;  // mean speed of the centre of mass on its way
+  double swing_s = 0;          // shortest
+  double foot_speed_m_s = 0;   // mean speed on the way up, over and down
+  double max_stride_m = 0;     // way of the trunk while each leg steps once
+  double margin_m = 0;         // of the centre of mass inside the triangle of the standing feet
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.boolean("enabled", self.enabled, "one leg at a time instead of the gaits");
+    visit.real("shift_s", self.shift_s, {0.02, 10.0}, "of the trunk between steps");
+    visit.real("shift_speed_m_s", self.shift_speed_m_s, {0.005, 2.0}, "mean, of the trunk");
+    visit.real("swing_s", self.swing_s, {0.05, 10.0}, "shortest swing");
+    visit.real("foot_speed_m_s", self.foot_speed_m_s, {0.01, 5.0}, "mean, of a swinging foot");
+    visit.real("max_stride_m", self.max_stride_m, {0.005, 2.0}, "way of the trunk per four steps");
+    visit.real("margin_m", self.margin_m, {0.0, 0.5}, "of the centre of mass in the triangle");
+  }
+};
+
 struct StandUpConfig {
   double fold_s = 0;                   // to the folded pose
   double rise_s = 0;                   // to standing
@@ -207,6 +229,7 @@ struct ControlConfig {
   BodyConfig body;
   MpcConfig mpc;
   WholeBodyConfig whole_body;
+  StaticWalkConfig static_walk;
   StandUpConfig stand_up;
   RecoveryConfig recovery;
 
@@ -218,6 +241,7 @@ struct ControlConfig {
     visit.group("body", self.body);
     visit.group("mpc", self.mpc);
     visit.group("whole_body", self.whole_body);
+    visit.group("static_walk", self.static_walk);
     visit.group("stand_up", self.stand_up);
     visit.group("recovery", self.recovery);
   }

@@ -1,5 +1,6 @@
 #include "core/control/locomotion.h"
 
+#include "core/control/joint_commands.h"
 #include "core/geometry/rotations.h"
 #include "core/math/elementary.h"
 #include "core/math/gravity.h"
@@ -220,16 +221,7 @@ void Locomotion::set_path(std::size_t leg, const mapping::MapWindow* window) {
   LegStatus& status = legs_[leg];
   SwingPath& path = status.path;
   path.landing_O_m = status.foothold.position_O_m;
-  double highest = larger(path.lift_off_O_m[2], path.landing_O_m[2]);
-  if (window != nullptr) {
-    const Result<double> obstacle =
-        window->max_height_along(path.lift_off_O_m[0], path.lift_off_O_m[1], path.landing_O_m[0],
-                                 path.landing_O_m[1], 2.0 * model_.foot_radius_m);
-    if (obstacle.ok()) {
-      highest = larger(highest, obstacle.value() + map_offset_.offset_m() + model_.foot_radius_m);
-    }
-  }
-  path.apex_O_m = highest + config_.swing.clearance_m;
+  path.apex_O_m = apex_O_m(path, window, model_, config_.swing.clearance_m, map_offset_.offset_m());
 }
 
 void Locomotion::plan(const estimation::RobotState& state, MpcProblem& problem) const {
@@ -286,19 +278,7 @@ void Locomotion::control_body(const estimation::RobotState& state) {
     task.acceleration_O_m_s2 = target.acceleration_O_m_s2;
   }
   const WholeBodyCommand& wanted = whole_body_.update(whole_body_state(state), body, tasks);
-  for (std::size_t joint = 0; joint < robot::kJoints; ++joint) {
-    const auto row = static_cast<Eigen::Index>(joint);
-    const std::size_t leg = joint / robot::kJointsPerLeg;
-    const std::size_t i = joint % robot::kJointsPerLeg;
-    const bool stands = tasks[leg].in_contact;
-    actuation::JointCommand& command = joints_[joint];
-    command.position_rad = wanted.q_rad[row];
-    command.velocity_rad_s = wanted.qd_rad_s[row];
-    command.torque_Nm = wanted.torque_Nm[row];
-    command.kp_Nm_rad = stands ? config_.whole_body.joint_kp_Nm_rad[i] : config_.swing.kp_Nm_rad[i];
-    command.kd_Nm_s_rad =
-        stands ? config_.whole_body.joint_kd_Nm_s_rad[i] : config_.swing.kd_Nm_s_rad[i];
-  }
+  joints_ = joint_commands(wanted, tasks, config_);
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     legs_[leg].force_O_N = wanted.force_O_N[leg];
   }

@@ -1,33 +1,30 @@
 #include "core/control/swing.h"
 
+#include <algorithm>
+
+#include "core/control/quintic.h"
 #include "core/math/elementary.h"
 
 namespace surefoot::control {
-namespace {
 
-struct Blend {
-  double value;
-  double slope;      // per unit of progress
-  double curvature;  // per unit of progress squared
-};
-
-// Quintic from 0 at `begin` to 1 at `end`.
-Blend quintic(double progress, double begin, double end) {
-  const double width = end - begin;
-  const double s = math::clamp((progress - begin) / width, 0.0, 1.0);
-  const double value = s * s * s * (10.0 + s * (6.0 * s - 15.0));
-  const double slope = 30.0 * s * s * (1.0 - s) * (1.0 - s) / width;
-  const double curvature = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) / (width * width);
-  return {value, slope, curvature};
+double apex_O_m(const SwingPath& path, const mapping::MapWindow* window,
+                const robot::RobotModel& model, double clearance_m, double map_offset_m) {
+  double highest_m = std::max(path.lift_off_O_m[2], path.landing_O_m[2]);
+  if (window == nullptr) return highest_m + clearance_m;
+  const Result<double> ground =
+      window->max_height_along(path.lift_off_O_m[0], path.lift_off_O_m[1], path.landing_O_m[0],
+                               path.landing_O_m[1], 2.0 * model.foot_radius_m);
+  if (ground.ok()) {
+    highest_m = std::max(highest_m, ground.value() + map_offset_m + model.foot_radius_m);
+  }
+  return highest_m + clearance_m;
 }
-
-}  // namespace
 
 SwingPoint evaluate(const SwingPath& path, double progress, double duration_s) {
   const double s = math::clamp(progress, 0.0, 1.0);
-  const Blend over = quintic(s, 0.15, 0.9);
-  const Blend rise = quintic(s, 0.0, 0.4);
-  const Blend fall = quintic(s, 0.5, 1.0);
+  const Quintic over = quintic(s, 0.15, 0.9);
+  const Quintic rise = quintic(s, 0.0, 0.4);
+  const Quintic fall = quintic(s, 0.5, 1.0);
   const Vector3 way = path.landing_O_m - path.lift_off_O_m;
   const double rise_m = path.apex_O_m - path.lift_off_O_m[2];
   const double fall_m = path.landing_O_m[2] - path.apex_O_m;

@@ -10,6 +10,7 @@
 #include "tests/rules/core_hash/workloads.h"
 #include "tests/support/mini_cheetah.h"
 #include "tests/support/mpc_problems.h"
+#include "tests/support/static_walk_world.h"
 
 namespace surefoot::tests {
 
@@ -115,6 +116,23 @@ void hash_whole_body(Fnv64& hash) {
   hash.word(whole_body.counters().refused, 8);
 }
 
+void hash_static_walk(Fnv64& hash) {
+  StaticWalkWorld world;
+  Random random(19);
+  control::VelocityCommand command{.forward_m_s = 0.06};
+  for (int i = 0; i < 3000; ++i) {
+    if (i % 300 == 0) {
+      command.left_m_s = random.uniform(-0.02, 0.02);
+      command.yaw_rate_rad_s = random.uniform(-0.2, 0.2);
+      world.ground_m[random.below(4)] = random.uniform(-0.02, 0.01);
+    }
+    world.tick(command, i < 2700);
+    mix(hash, world.state.p_OB_m);
+    for (const control::LegStatus& leg : world.walk->legs()) mix(hash, leg.force_O_N);
+  }
+  hash.word(world.walk->counters().steps, 8);
+}
+
 // Rolls over from random poses; the trunk turns at random between rolls.
 void hash_recovery(Fnv64& hash) {
   control::RecoveryConfig config;
@@ -129,7 +147,7 @@ void hash_recovery(Fnv64& hash) {
   SUREFOOT_ASSERT(ok(config.roll.push_back({0.05, {-1.4, -1.6, 2.75}, {0.9, -3.1, 2.75}})));
   SUREFOOT_ASSERT(ok(config.roll.push_back({0.2, {0.0, -1.4, 2.7}, {1.4, -3.4, 0.7}})));
   control::Recovery recovery;
-  recovery.reset(config, {0.0, -1.4, 2.7});
+  recovery.reset(config, robot::RobotModel{}, {0.0, -1.4, 2.7});
   Random random(11);
   estimation::RobotState state;
   for (int i = 0; i < 20; ++i) {

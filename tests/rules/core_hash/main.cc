@@ -27,6 +27,7 @@ constexpr Workload kWorkloads[] = {
     {"convex_mpc", surefoot::tests::hash_convex_mpc},
     {"whole_body", surefoot::tests::hash_whole_body},
     {"recovery", surefoot::tests::hash_recovery},
+    {"static_walk", surefoot::tests::hash_static_walk},
     {"jump", surefoot::tests::hash_jump},
     {"ledge", surefoot::tests::hash_ledge},
     {"obstacles", surefoot::tests::hash_obstacles},

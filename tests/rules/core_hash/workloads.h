@@ -37,6 +37,7 @@ void hash_swing(Fnv64& hash);
 void hash_convex_mpc(Fnv64& hash);
 void hash_whole_body(Fnv64& hash);
 void hash_recovery(Fnv64& hash);
+void hash_static_walk(Fnv64& hash);
 void hash_jump(Fnv64& hash);
 void hash_ledge(Fnv64& hash);
 void hash_obstacles(Fnv64& hash);

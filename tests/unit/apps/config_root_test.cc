@@ -75,6 +75,16 @@ TEST(ConfigRoot, HeightMapTakesAFileAndAScale) {
   EXPECT_EQ(config.world.scale, 0.1);
 }
 
+TEST(ConfigRoot, ARobotThatWalksOneLegAtATimeDoesNotJump) {
+  RunRequest request = cross("flat");
+  request.robot = "littledog";
+  EXPECT_EQ(issues_of(request), "");
+  request.sets = {"mission.jump=true"};
+  EXPECT_EQ(issues_of(request),
+            "--mission: mission.jump: true, but the robot walks one leg at a time "
+            "(control.static_walk.enabled)\n");
+}
+
 TEST(ConfigRoot, WrongWorldParameters) {
   EXPECT_EQ(issues_of(cross("flat:height=0.05")),
             "--world: world.height: not a parameter of this world; allowed: friction\n");

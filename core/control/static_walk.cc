@@ -1,0 +1,418 @@
+#include "core/control/static_walk.h"
+
+#include "core/control/joint_commands.h"
+#include "core/control/quintic.h"
+#include "core/geometry/rotations.h"
+#include "core/math/elementary.h"
+#include "core/math/gravity.h"
+#include "core/robot/kinematics.h"
+
+namespace surefoot::control {
+namespace {
+
+// Legs of one side follow each other, the hind one first: its step brings the foot to where the
+// front one leaves, and both steps have most of their triangles in common.
+constexpr std::array<std::size_t, robot::kLegs> kOrder{robot::kHindRight, robot::kFrontRight,
+                                                       robot::kHindLeft, robot::kFrontLeft};
+// The feet stand -1/2, -1/4, 0, 1/4 of a stride off their hips when a leg's turn comes: their mean
+// lags by 1/8, and the foot goes to 1/2 of a stride ahead.
+constexpr double kLandingStrides = 0.625;
+constexpr double kFeelsGround = 0.5;  // of a swing: contact before is a stub, not a touchdown
+constexpr double kMaxHeadingLag_rad = 0.15;
+
+double larger(double a, double b) { return a > b ? a : b; }
+
+Vector2 heading(double yaw_rad, double forward, double left) {
+  const math::SinCos yaw = math::sin_cos(yaw_rad);
+  return {yaw.cos * forward - yaw.sin * left, yaw.sin * forward + yaw.cos * left};
+}
+
+}  // namespace
+
+void StaticWalk::reset(const ControlConfig& config, const robot::RobotModel& model) {
+  config_ = config;
+  model_ = model;
+  footholds_.reset(config.foothold, model);
+  map_offset_.reset(config.foothold.max_map_offset_m, model.foot_radius_m);
+  whole_body_.reset(config.whole_body, model);
+  stage_ = Stage::kStand;
+  turn_ = 0;
+  velocity_ = VelocityCommand{};
+  blocked_s_ = 0;
+  legs_.fill(LegStatus{});
+  load_.fill(1.0);
+  feet_O_m_.fill(Vector3::Zero());
+  counters_ = StaticWalkCounters{};
+  joints_ = actuation::JointCommands{};
+}
+
+void StaticWalk::start(const estimation::RobotState& state) {
+  stage_ = Stage::kStand;
+  turn_ = 0;
+  velocity_ = VelocityCommand{};
+  blocked_s_ = 0;
+  legs_.fill(LegStatus{});
+  load_.fill(1.0);
+  map_offset_.clear();
+  Vector2 centre = Vector2::Zero();
+  double feet_m = 0;
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    feet_O_m_[leg] = state.feet[leg].p_O_m;
+    legs_[leg].anchor_O_m = feet_O_m_[leg];
+    legs_[leg].foothold.nominal_O_m = feet_O_m_[leg];
+    legs_[leg].foothold.position_O_m = feet_O_m_[leg];
+    centre += feet_O_m_[leg].head<2>() / static_cast<double>(robot::kLegs);
+    feet_m += feet_O_m_[leg][2] / static_cast<double>(robot::kLegs);
+  }
+  yaw_rad_ = state.yaw_rad;
+  to_ = {centre, feet_m - model_.foot_radius_m + config_.body.height_m,
+         Vector3(0.0, 0.0, state.yaw_rad)};
+  from_ = {state.p_OB_m.head<2>(), state.p_OB_m[2], geometry::to_roll_pitch_yaw(state.R_OB)};
+  progress_ = 0;
+  duration_s_ = config_.static_walk.shift_s;
+}
+
+std::size_t StaticWalk::leg() const { return kOrder[turn_]; }
+std::size_t StaticWalk::next_leg() const { return kOrder[(turn_ + 1) % robot::kLegs]; }
+
+std::array<estimation::GaitPhase, robot::kLegs> StaticWalk::gait_phases() const {
+  std::array<estimation::GaitPhase, robot::kLegs> phases;
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    phases[leg].stance_planned = legs_[leg].mode != LegMode::kSwing;
+    phases[leg].swing_progress = legs_[leg].swing_progress;
+    phases[leg].height_above_landing_m = legs_[leg].height_above_landing_m;
+  }
+  return phases;
+}
+
+const actuation::JointCommands& StaticWalk::update(const estimation::RobotState& state,
+                                                   const mapping::MapWindow* window,
+                                                   const VelocityCommand& velocity, bool walking,
+                                                   GroundRule ground, double step_s) {
+  map_offset_.update(state, legs_, window);
+  progress_ = math::clamp(progress_ + step_s / duration_s_, 0.0, 1.0);
+  follow(velocity, step_s);
+  if (walking) {
+    yaw_rad_ = state.yaw_rad + math::clamp(math::wrap_angle(yaw_rad_ - state.yaw_rad) +
+                                               velocity_.yaw_rate_rad_s * step_s,
+                                           -kMaxHeadingLag_rad, kMaxHeadingLag_rad);
+  }
+  switch (stage_) {
+    case Stage::kStand:
+      if (!walking) {
+        blocked_s_ = 0;
+      } else if (!begin_step(state, window, ground)) {
+        blocked_s_ += step_s;
+      }
+      break;
+    case Stage::kShift:
+      load_[leg()] = 1.0 - quintic(progress_).value;
+      if (progress_ >= 1.0) lift(state, window);
+      break;
+    case Stage::kSwing: swing(state, step_s); break;
+  }
+  command(state);
+  return joints_;
+}
+
+double StaticWalk::cycle_s() const {
+  const StaticWalkConfig& config = config_.static_walk;
+  return static_cast<double>(robot::kLegs) * config.swing_s + 2.0 * config.shift_s;
+}
+
+// The trunk sways from side to side with every cycle; whoever steers by its place commands that
+// sway's opposite. The mean over a cycle is what is meant.
+void StaticWalk::follow(const VelocityCommand& velocity, double step_s) {
+  const double share = math::clamp(step_s / cycle_s(), 0.0, 1.0);
+  velocity_.forward_m_s += share * (velocity.forward_m_s - velocity_.forward_m_s);
+  velocity_.left_m_s += share * (velocity.left_m_s - velocity_.left_m_s);
+  velocity_.yaw_rate_rad_s += share * (velocity.yaw_rate_rad_s - velocity_.yaw_rate_rad_s);
+}
+
+// Where the Raibert rule is for a trot, this is for a crawl: from where the feet stand to half a
+// stride ahead of the hip.
+Vector3 StaticWalk::nominal_O_m() const {
+  Vector2 stride = heading(yaw_rad_, velocity_.forward_m_s, velocity_.left_m_s) * cycle_s();
+  const double length_m = stride.norm();
+  const double longest_m = config_.static_walk.max_stride_m;
+  if (length_m > longest_m) stride *= longest_m / length_m;
+  Vector2 middle = Vector2::Zero();  // of the hips, by the feet
+  for (std::size_t i = 0; i < robot::kLegs; ++i) {
+    middle += (feet_O_m_[i].head<2>() - hip_O_m(i)) / static_cast<double>(robot::kLegs);
+  }
+  const Vector2 place = middle + hip_O_m(leg()) + kLandingStrides * stride;
+  return {place[0], place[1], feet_O_m_[leg()][2]};
+}
+
+// From the middle of the hips, axes of O.
+Vector2 StaticWalk::hip_O_m(std::size_t leg) const {
+  const Vector3 hip_B = robot::hip_joint_B_m(model_, leg);
+  return heading(yaw_rad_, hip_B[0],
+                 hip_B[1] + robot::left_sign(leg) * config_.foothold.lateral_offset_m);
+}
+
+// false: there is no foothold.
+bool StaticWalk::begin_step(const estimation::RobotState& state, const mapping::MapWindow* window,
+                            GroundRule ground) {
+  for (std::size_t i = 0; i < robot::kLegs; ++i) feet_O_m_[i] = state.feet[i].p_O_m;
+  LegStatus& status = legs_[leg()];
+  status.foothold = footholds_.choose(nominal_O_m(), window, ground);
+  if (status.foothold.reason == FootholdReason::kNone) return false;
+  const bool from_map = status.foothold.reason == FootholdReason::kNominal ||
+                        status.foothold.reason == FootholdReason::kMoved;
+  if (from_map) status.foothold.position_O_m[2] += map_offset_.offset_m();
+  blocked_s_ = 0;
+  begin_shift(state);
+  return true;
+}
+
+void StaticWalk::begin_shift(const estimation::RobotState& state) {
+  from_ = pose_now().pose;
+  plan_pose(state);
+  const StaticWalkConfig& config = config_.static_walk;
+  const double way_m = (to_.centre_O_m - from_.centre_O_m).norm();
+  duration_s_ = larger(config.shift_s * 0.25, way_m / config.shift_speed_m_s);
+  progress_ = 0;
+  stage_ = Stage::kShift;
+}
+
+// The trunk's pose for the step under way: over the feet, along the plane through them.
+void StaticWalk::plan_pose(const estimation::RobotState& state) {
+  std::array<Vector3, robot::kLegs> feet = feet_O_m_;
+  feet[leg()] = legs_[leg()].foothold.position_O_m;
+  Vector3 mean = Vector3::Zero();
+  double front_m = 0;  // higher than the hind ones
+  double left_m = 0;
+  for (std::size_t i = 0; i < robot::kLegs; ++i) {
+    mean += feet[i] / static_cast<double>(robot::kLegs);
+    front_m += 0.5 * robot::front_sign(i) * feet[i][2];
+    left_m += 0.5 * robot::left_sign(i) * feet[i][2];
+  }
+  const Vector3 hip_B = robot::hip_joint_B_m(model_, robot::kFrontLeft);
+  const double share = config_.body.slope_share;
+  to_.roll_pitch_yaw_rad = {share * math::atan2(left_m, 2.0 * hip_B[1]),
+                            -share * math::atan2(front_m, 2.0 * hip_B[0]), yaw_rad_};
+  to_.height_O_m = mean[2] - model_.foot_radius_m + config_.body.height_m;
+  to_.centre_O_m = place_centre(mean.head<2>());
+  // Lower where a leg could not reach.
+  constexpr int kTries = 6;
+  constexpr double kStep_m = 0.006;
+  for (int i = 0; i < kTries && !reachable(state); ++i) {
+    to_.height_O_m -= kStep_m;
+    if (i == 0) ++counters_.lowered;
+  }
+}
+
+bool StaticWalk::reachable(const estimation::RobotState& state) const {
+  const Vector3& rpy = to_.roll_pitch_yaw_rad;
+  const Matrix3 R_BO = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]).transpose();
+  const Vector2 origin = to_.centre_O_m - centre_offset_O_m(state);
+  const Vector3 p_OB_m(origin[0], origin[1], to_.height_O_m);
+  for (std::size_t i = 0; i < robot::kLegs; ++i) {
+    if (!ok(robot::solve_leg(model_, i, R_BO * (feet_O_m_[i] - p_OB_m)).status)) return false;
+  }
+  const Vector3 landing_B = R_BO * (legs_[leg()].foothold.position_O_m - p_OB_m);
+  return ok(robot::solve_leg(model_, leg(), landing_B).status);
+}
+
+// Into the triangle of this step and, where that leaves room, of the next as well.
+Vector2 StaticWalk::place_centre(const Vector2& wanted_O_m) {
+  Triangle now;
+  Triangle next;
+  std::size_t corners = 0;
+  std::size_t next_corners = 0;
+  for (std::size_t i = 0; i < robot::kLegs; ++i) {
+    if (i != leg()) now.corners_O_m[corners++] = feet_O_m_[i].head<2>();
+    if (i == next_leg()) continue;
+    next.corners_O_m[next_corners++] = i == leg()
+                                           ? Vector2(legs_[i].foothold.position_O_m.head<2>())
+                                           : Vector2(feet_O_m_[i].head<2>());
+  }
+  const double margin_m = config_.static_walk.margin_m;
+  SupportRegion both;
+  if (ok(both.add(now, margin_m)) && ok(both.add(next, margin_m))) {
+    const Result<Vector2> place = both.nearest(wanted_O_m);
+    if (place.ok()) return place.value();
+  }
+  SupportRegion one;
+  const double room_m = now.inradius_m();
+  if (room_m < margin_m) ++counters_.narrow;
+  constexpr double kOfRoom = 0.95;  // leaves a small triangle, not a point
+  const double kept_m = room_m < margin_m ? kOfRoom * room_m : margin_m;
+  if (!ok(one.add(now, kept_m))) return wanted_O_m;
+  const Result<Vector2> place = one.nearest(wanted_O_m);
+  return place.ok() ? place.value() : wanted_O_m;
+}
+
+void StaticWalk::lift(const estimation::RobotState& state, const mapping::MapWindow* window) {
+  LegStatus& status = legs_[leg()];
+  status.mode = LegMode::kSwing;
+  status.swing_progress = 0;
+  status.searched_m = 0;
+  status.path.lift_off_O_m = state.feet[leg()].p_O_m;
+  status.path.landing_O_m = status.foothold.position_O_m;
+  status.path.apex_O_m =
+      apex_O_m(status.path, window, model_, config_.swing.clearance_m, map_offset_.offset_m());
+  const StaticWalkConfig& config = config_.static_walk;
+  const double way_m = (status.path.landing_O_m - status.path.lift_off_O_m).head<2>().norm() +
+                       2.0 * status.path.apex_O_m - status.path.lift_off_O_m[2] -
+                       status.path.landing_O_m[2];
+  status.swing_s = larger(config.swing_s, way_m / config.foot_speed_m_s);
+  load_[leg()] = 0;
+  stage_ = Stage::kSwing;
+}
+
+void StaticWalk::swing(const estimation::RobotState& state, double step_s) {
+  LegStatus& status = legs_[leg()];
+  const bool contact = state.feet[leg()].in_contact;
+  if (status.mode == LegMode::kSwing) {
+    status.swing_progress += step_s / status.swing_s;
+    if (contact && status.swing_progress >= kFeelsGround) return put_down(state);
+    if (status.swing_progress >= 1.0) {
+      status.mode = LegMode::kSearch;
+      status.anchor_O_m = status.path.landing_O_m;
+      status.searched_m = 0;
+    }
+  } else {
+    status.searched_m += config_.swing.search_speed_m_s * step_s;
+    if (contact) return put_down(state);
+    if (status.searched_m >= config_.swing.search_depth_m) return go_back(state);
+  }
+  status.height_above_landing_m = state.feet[leg()].p_O_m[2] - status.path.landing_O_m[2];
+}
+
+// To where it has stood, which bears a foot.
+void StaticWalk::go_back(const estimation::RobotState& state) {
+  ++counters_.missed;
+  LegStatus& status = legs_[leg()];
+  const Vector3 home = status.path.lift_off_O_m;
+  status.path.lift_off_O_m = state.feet[leg()].p_O_m;
+  status.path.landing_O_m = home;
+  status.foothold.position_O_m = home;
+  status.mode = LegMode::kSwing;
+  status.swing_progress = 0;
+}
+
+void StaticWalk::put_down(const estimation::RobotState& state) {
+  LegStatus& status = legs_[leg()];
+  status.mode = LegMode::kStance;
+  status.swing_progress = 0;
+  status.height_above_landing_m = 0;
+  status.anchor_O_m = state.feet[leg()].p_O_m;
+  feet_O_m_[leg()] = status.anchor_O_m;
+  load_[leg()] = 1;
+  ++counters_.steps;
+  turn_ = (turn_ + 1) % robot::kLegs;
+  stage_ = Stage::kStand;
+}
+
+// On the way from the last pose to the next.
+StaticWalk::Motion StaticWalk::pose_now() const {
+  const Quintic blend = quintic(progress_);
+  const double rate = blend.slope / duration_s_;
+  const double curvature = blend.curvature / math::square(duration_s_);
+  const Vector2 way = to_.centre_O_m - from_.centre_O_m;
+  const double rise_m = to_.height_O_m - from_.height_O_m;
+  Vector3 turn = to_.roll_pitch_yaw_rad - from_.roll_pitch_yaw_rad;
+  turn[2] = math::wrap_angle(turn[2]);
+  Motion motion;
+  motion.pose = {from_.centre_O_m + way * blend.value, from_.height_O_m + rise_m * blend.value,
+                 from_.roll_pitch_yaw_rad + turn * blend.value};
+  motion.v_O_m_s = {way[0] * rate, way[1] * rate, rise_m * rate};
+  motion.a_O_m_s2 = {way[0] * curvature, way[1] * curvature, rise_m * curvature};
+  motion.yaw_rate_rad_s = turn[2] * rate;
+  return motion;
+}
+
+// Of the centre of mass from B's origin, seen from above.
+Vector2 StaticWalk::centre_offset_O_m(const estimation::RobotState& state) const {
+  return (state.R_OB * whole_body_.dynamics().centroid().p_B_m).head<2>();
+}
+
+SwingPoint StaticWalk::foot_target() const {
+  const LegStatus& status = legs_[leg()];
+  if (status.mode == LegMode::kSwing) {
+    return evaluate(status.path, status.swing_progress, status.swing_s);
+  }
+  SwingPoint point;
+  point.position_O_m = status.anchor_O_m - Vector3(0.0, 0.0, status.searched_m);
+  point.velocity_O_m_s = Vector3(0.0, 0.0, -config_.swing.search_speed_m_s);
+  return point;
+}
+
+void StaticWalk::command(const estimation::RobotState& state) {
+  const Motion motion = pose_now();
+  const Vector3& rpy = motion.pose.roll_pitch_yaw_rad;
+  const Vector2 offset = centre_offset_O_m(state);
+  const Vector2 origin = motion.pose.centre_O_m - offset;
+  BodyTask body;
+  body.p_OB_m = Vector3(origin[0], origin[1], motion.pose.height_O_m);
+  body.v_OB_m_s = motion.v_O_m_s;
+  body.a_OB_m_s2 = motion.a_O_m_s2;
+  body.R_OB = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]);
+  body.angular_velocity_O_rad_s = Vector3(0.0, 0.0, motion.yaw_rate_rad_s);
+  share_load(state, state.p_OB_m.head<2>() + offset, push_N(state, body));
+  LegTasks tasks;
+  for (std::size_t i = 0; i < robot::kLegs; ++i) {
+    LegTask& task = tasks[i];
+    task.in_contact = legs_[i].mode == LegMode::kStance;
+    task.force_O_N = legs_[i].force_O_N;
+    if (task.in_contact) continue;
+    const SwingPoint target = foot_target();
+    task.position_O_m = target.position_O_m;
+    task.velocity_O_m_s = target.velocity_O_m_s;
+    task.acceleration_O_m_s2 = target.acceleration_O_m_s2;
+  }
+  const WholeBodyCommand& wanted = whole_body_.update(whole_body_state(state), body, tasks);
+  joints_ = joint_commands(wanted, tasks, config_);
+  hold_feet(body);
+  for (std::size_t i = 0; i < robot::kLegs; ++i) legs_[i].force_O_N = wanted.force_O_N[i];
+}
+
+// Standing legs keep their feet where they are under the trunk's wanted pose: a foot that carries
+// next to nothing would be dragged along otherwise.
+void StaticWalk::hold_feet(const BodyTask& body) {
+  for (std::size_t i = 0; i < robot::kLegs; ++i) {
+    if (legs_[i].mode != LegMode::kStance) continue;
+    const Vector3 foot_B = body.R_OB.transpose() * (feet_O_m_[i] - body.p_OB_m);
+    const robot::LegVector q_rad = robot::solve_leg(model_, i, foot_B).q_rad;
+    for (std::size_t k = 0; k < robot::kJointsPerLeg; ++k) {
+      joints_[robot::joint_index(i, k)].position_rad = q_rad[static_cast<Eigen::Index>(k)];
+    }
+  }
+}
+
+// The force that holds the robot up and on its path.
+Vector3 StaticWalk::push_N(const estimation::RobotState& state, const BodyTask& body) const {
+  const WholeBodyConfig& gains = config_.whole_body;
+  Vector3 acceleration = body.a_OB_m_s2;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const auto axis = static_cast<std::size_t>(i);
+    acceleration[i] += gains.position_gain_1_s2[axis] * (body.p_OB_m[i] - state.p_OB_m[i]) +
+                       gains.velocity_gain_1_s[axis] * (body.v_OB_m_s[i] - state.v_OB_m_s[i]);
+  }
+  return model_.total_mass_kg() * (acceleration + Vector3(0.0, 0.0, kGravity_m_s2));
+}
+
+// Vertical forces with their resultant through the centre of mass, the least squares of force^2 /
+// load, so that a foot is loaded and unloaded smoothly; what pushes sideways goes with them.
+void StaticWalk::share_load(const estimation::RobotState& state, const Vector2& centre_O_m,
+                            const Vector3& force_O_N) {
+  std::array<Vector3, robot::kLegs> lever;
+  Matrix3 gram = Matrix3::Identity() * 1e-9;  // feet in a line: still a solution
+  for (std::size_t i = 0; i < robot::kLegs; ++i) {
+    const Vector2 off = state.feet[i].p_O_m.head<2>() - centre_O_m;
+    lever[i] = Vector3(1.0, off[0], off[1]);
+    if (legs_[i].mode == LegMode::kStance) gram += load_[i] * lever[i] * lever[i].transpose();
+  }
+  const Vector3 multiplier = gram.llt().solve(Vector3(force_O_N[2], 0.0, 0.0));
+  for (std::size_t i = 0; i < robot::kLegs; ++i) {
+    Vector3& force = legs_[i].force_O_N;
+    force.setZero();
+    if (legs_[i].mode != LegMode::kStance) continue;
+    force[2] = larger(0.0, load_[i] * lever[i].dot(multiplier));
+    force.head<2>() = force_O_N.head<2>() * (force[2] / larger(force_O_N[2], 1e-3));
+  }
+}
+
+}  // namespace surefoot::control

@@ -1,0 +1,133 @@
+// Walking with one leg in the air at a time and the centre of mass over the feet that stand
+// (paper 001, section IV): for ground where every foot has to be placed.
+//
+// In: the estimator's RobotState, the published map window (or none), a velocity command.
+// Out: twelve joint commands for this tick, and for each leg what it is about.
+//
+// Legs step in the order hind right, front right, hind left, front left. Each step:
+//   shift  the centre of mass moves into the triangle of the feet that will stand and, where both
+//          have room in common, into that of the next step, so that this one needs no shift
+//   swing  the foot goes up, over and down to its foothold; then straight down until it feels ground
+// A foot that finds no ground goes back to where it came from and the step is planned anew.
+// Without a foothold the robot stands and blocked_s() counts.
+//
+// Frames: O, metres, N. Memory: sizeof(StaticWalk) 22 kB, most of it WholeBody. Cost per tick: one
+// whole-body solve, at most one foothold search. No allocation.
+#pragma once
+
+#include <array>
+
+#include "core/actuation/joint_bus.h"
+#include "core/control/config.h"
+#include "core/control/foothold.h"
+#include "core/control/leg_status.h"
+#include "core/control/map_offset.h"
+#include "core/control/support_region.h"
+#include "core/control/whole_body.h"
+#include "core/estimation/contact.h"
+#include "core/estimation/estimator.h"
+#include "core/mapping/map_window.h"
+
+namespace surefoot::control {
+
+// Since reset().
+struct StaticWalkCounters {
+  std::uint64_t steps = 0;
+  std::uint64_t missed = 0;   // no ground where it should be: the foot went back
+  std::uint64_t narrow = 0;   // the margin had to be cut to find room over the feet
+  std::uint64_t lowered = 0;  // a stance leg could not have reached: the trunk was lowered
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("steps", self.steps);
+    visit("missed", self.missed);
+    visit("narrow", self.narrow);
+    visit("lowered", self.lowered);
+  }
+};
+
+class StaticWalk {
+ public:
+  void reset(const ControlConfig& config, const robot::RobotModel& model);
+
+  // All legs in stance at the present pose: call once when stand-up is done.
+  void start(const estimation::RobotState& state);
+
+  // walking: whether new steps may begin; a step under way is finished at any rate.
+  const actuation::JointCommands& update(const estimation::RobotState& state,
+                                         const mapping::MapWindow* window,
+                                         const VelocityCommand& velocity, bool walking,
+                                         GroundRule ground, double step_s);
+
+  const std::array<LegStatus, robot::kLegs>& legs() const { return legs_; }
+  // What the contact estimator needs to know of the plan.
+  std::array<estimation::GaitPhase, robot::kLegs> gait_phases() const;
+  bool at_rest() const { return stage_ == Stage::kStand; }
+  // How long there has been no foothold for the leg whose turn it is.
+  double blocked_s() const { return blocked_s_; }
+  const StaticWalkCounters& counters() const { return counters_; }
+
+ private:
+  enum class Stage : std::uint8_t { kStand = 0, kShift, kSwing };
+
+  // Of the trunk: the centre of mass, the height of B's origin, roll, pitch, yaw.
+  struct Pose {
+    Vector2 centre_O_m = Vector2::Zero();
+    double height_O_m = 0;
+    Vector3 roll_pitch_yaw_rad = Vector3::Zero();
+  };
+
+  struct Motion {
+    Pose pose;
+    Vector3 v_O_m_s = Vector3::Zero();
+    Vector3 a_O_m_s2 = Vector3::Zero();
+    double yaw_rate_rad_s = 0;
+  };
+
+  std::size_t leg() const;  // whose turn it is
+  std::size_t next_leg() const;
+  bool begin_step(const estimation::RobotState& state, const mapping::MapWindow* window,
+                  GroundRule ground);
+  void begin_shift(const estimation::RobotState& state);
+  Vector3 nominal_O_m() const;
+  double cycle_s() const;
+  void follow(const VelocityCommand& velocity, double step_s);
+  Vector2 hip_O_m(std::size_t leg) const;
+  void plan_pose(const estimation::RobotState& state);
+  Vector2 place_centre(const Vector2& wanted_O_m);
+  bool reachable(const estimation::RobotState& state) const;
+  Motion pose_now() const;
+  Vector2 centre_offset_O_m(const estimation::RobotState& state) const;
+  void lift(const estimation::RobotState& state, const mapping::MapWindow* window);
+  void swing(const estimation::RobotState& state, double step_s);
+  void go_back(const estimation::RobotState& state);
+  void put_down(const estimation::RobotState& state);
+  SwingPoint foot_target() const;
+  void command(const estimation::RobotState& state);
+  void hold_feet(const BodyTask& body);
+  Vector3 push_N(const estimation::RobotState& state, const BodyTask& body) const;
+  void share_load(const estimation::RobotState& state, const Vector2& centre_O_m,
+                  const Vector3& force_O_N);
+
+  ControlConfig config_;
+  robot::RobotModel model_;
+  FootholdPlanner footholds_;
+  MapOffset map_offset_;
+  WholeBody whole_body_;
+  Stage stage_ = Stage::kStand;
+  std::size_t turn_ = 0;   // in the order of legs
+  double progress_ = 0;    // of the shift
+  double duration_s_ = 1;  // of the shift
+  Pose from_;
+  Pose to_;
+  std::array<Vector3, robot::kLegs> feet_O_m_;  // where the feet stand, the step's landing included
+  std::array<double, robot::kLegs> load_{};     // share of the load that a foot may carry, 0 to 1
+  VelocityCommand velocity_;                    // its mean over about a cycle
+  double yaw_rad_ = 0;                          // the heading to keep
+  double blocked_s_ = 0;
+  std::array<LegStatus, robot::kLegs> legs_;
+  StaticWalkCounters counters_;
+  actuation::JointCommands joints_;
+};
+
+}  // namespace surefoot::control

@@ -1,0 +1,126 @@
+// The walk with one leg in the air, in a world without forces.
+#include "core/control/static_walk.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "tests/support/static_walk_world.h"
+
+namespace surefoot::control {
+namespace {
+
+using tests::StaticWalkWorld;
+
+VelocityCommand forward(double speed_m_s) { return {.forward_m_s = speed_m_s}; }
+
+TEST(StaticWalk, KeepsTheCentreOfMassOverTheStandingFeetByTheMargin) {
+  StaticWalkWorld world;
+  double least_m = 1;
+  for (int i = 0; i < 10000; ++i) {
+    world.tick(forward(0.06), true);
+    ASSERT_LE(world.in_the_air(), 1);
+    if (world.in_the_air() == 0) continue;
+    Triangle triangle;
+    std::size_t corners = 0;
+    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+      if (world.walk->legs()[leg].mode != LegMode::kStance) continue;
+      triangle.corners_O_m[corners++] = world.state.feet[leg].p_O_m.head<2>();
+    }
+    SupportRegion region;
+    ASSERT_EQ(region.add(triangle, 0.0), Status::kOk);
+    ASSERT_TRUE(region.contains(world.centre_O_m())) << "tick " << i;
+    for (double margin_m = 0.002; margin_m < 0.03; margin_m += 0.001) {
+      SupportRegion drawn_in;
+      ASSERT_EQ(drawn_in.add(triangle, margin_m), Status::kOk);
+      if (drawn_in.contains(world.centre_O_m())) continue;
+      least_m = std::min(least_m, margin_m);
+      break;
+    }
+  }
+  EXPECT_GE(least_m, 0.018);
+  EXPECT_GT(world.walk->counters().steps, 30U);
+  EXPECT_EQ(world.walk->counters().narrow, 0U);
+}
+
+TEST(StaticWalk, StepsHindThenFrontOfEachSide) {
+  StaticWalkWorld world;
+  std::vector<std::size_t> order;
+  std::array<bool, robot::kLegs> was{};
+  for (int i = 0; i < 6000; ++i) {
+    world.tick(forward(0.06), true);
+    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+      const bool swings = world.walk->legs()[leg].mode == LegMode::kSwing;
+      if (swings && !was[leg]) order.push_back(leg);
+      was[leg] = swings;
+    }
+  }
+  ASSERT_GE(order.size(), 12U);
+  const std::array<std::size_t, 4> expected{robot::kHindRight, robot::kFrontRight, robot::kHindLeft,
+                                            robot::kFrontLeft};
+  for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], expected[i % 4]);
+}
+
+// Four steps carry the trunk by one stride, and a stride is what is commanded for a cycle, at most
+// the longest.
+TEST(StaticWalk, GoesAStrideInFourSteps) {
+  StaticWalkWorld world;
+  for (int i = 0; i < 10000; ++i) world.tick(forward(1.0), true);
+  const double from_m = world.state.p_OB_m[0];
+  const std::uint64_t steps = world.walk->counters().steps;
+  for (int i = 0; i < 10000; ++i) world.tick(forward(1.0), true);
+  const double made = static_cast<double>(world.walk->counters().steps - steps);
+  EXPECT_NEAR((world.state.p_OB_m[0] - from_m) / (made / 4.0), 0.12, 0.006);
+  EXPECT_NEAR(world.state.p_OB_m[1], 0.0, 0.04);
+}
+
+TEST(StaticWalk, FinishesItsStepAndStandsStillWhenAskedTo) {
+  StaticWalkWorld world;
+  for (int i = 0; i < 1500; ++i) world.tick(forward(0.06), true);
+  int ticks = 0;
+  for (; ticks < 1000 && !world.walk->at_rest(); ++ticks) world.tick({}, false);
+  ASSERT_TRUE(world.walk->at_rest());
+  const std::uint64_t steps = world.walk->counters().steps;
+  for (int i = 0; i < 1000; ++i) world.tick({}, false);
+  EXPECT_EQ(world.walk->counters().steps, steps);
+  EXPECT_EQ(world.in_the_air(), 0);
+}
+
+// A hole under the foot that steps first: it comes back to where it stood, again and again.
+TEST(StaticWalk, AFootThatFindsNoGroundGoesBack) {
+  StaticWalkWorld world;
+  const Vector3 home = world.state.feet[robot::kHindRight].p_O_m;
+  world.ground_m[robot::kHindRight] = -1.0;
+  for (int i = 0; i < 1000 && world.walk->counters().missed == 0; ++i) {
+    world.tick(forward(0.06), true);
+  }
+  ASSERT_EQ(world.walk->counters().missed, 1U);
+  world.ground_m[robot::kHindRight] = 0.0;
+  for (int i = 0; i < 1000 && world.walk->counters().steps == 0; ++i) {
+    world.tick(forward(0.06), true);
+  }
+  ASSERT_EQ(world.walk->counters().steps, 1U);
+  EXPECT_LT((world.state.feet[robot::kHindRight].p_O_m - home).norm(), 0.005);
+}
+
+TEST(StaticWalk, StandsAndCountsWhereNoFootholdIs) {
+  StaticWalkWorld world;
+  auto window = std::make_unique<mapping::MapWindow>();
+  window->stamp = milliseconds(1);
+  window->cell_size_m = 0.01;
+  window->first = {-50, -50};
+  for (mapping::WindowCell& cell : window->cells) {
+    cell.state = mapping::CellState::kMeasured;
+    cell.traversability = mapping::Traversability::kUnsteppable;
+  }
+  for (int i = 0; i < 500; ++i) world.tick(forward(0.06), true, window.get());
+  EXPECT_NEAR(world.walk->blocked_s(), 1.0, 0.01);
+  EXPECT_EQ(world.walk->counters().steps, 0U);
+  EXPECT_EQ(world.in_the_air(), 0);
+  world.tick(forward(0.06), false, window.get());
+  EXPECT_EQ(world.walk->blocked_s(), 0.0);
+}
+
+}  // namespace
+}  // namespace surefoot::control
