@@ -94,7 +94,7 @@ void add_file(const char* option, const std::string& kind, const std::string& na
 
 struct WorldArgument {
   std::string name;
-  std::vector<std::string> items;  // after the colon: "height=0.05", or a bare file name
+  std::vector<std::string> items;  // after the colon: "height=0.05", or a bare value
 };
 
 WorldArgument split_world(const std::string& text) {
@@ -133,7 +133,9 @@ std::string full_key(const std::string& name, const std::vector<std::string>& ke
 void apply_world_item(const std::string& item, const std::vector<std::string>& keys,
                       ConfigNode& tree, ConfigIssues& issues) {
   const std::size_t equals = item.find('=');
-  const std::string name = equals == std::string::npos ? "file" : item.substr(0, equals);
+  // A bare item is the first parameter's value: heightmap:FILE, rocks:flat.
+  const std::string first = keys.empty() ? std::string() : keys.front();
+  const std::string name = equals == std::string::npos ? first : item.substr(0, equals);
   const std::string key = full_key(name, keys);
   if (key.empty()) {
     std::string known;
@@ -221,6 +223,14 @@ void check_gait(const autonomy::AutonomyConfig& config, ConfigIssues& issues) {
                     "true, but the robot walks one leg at a time (control.static_walk.enabled)"});
 }
 
+void take_goal_from_world(Config& config) {
+  autonomy::MissionConfig& mission = config.autonomy.mission;
+  const bool crosses = mission.kind == autonomy::MissionConfig::Kind::kCross;
+  if (crosses && mission.waypoints.empty() && mission.goal_x_m == 0.0) {
+    mission.goal_x_m = config.world.goal_x_m;
+  }
+}
+
 }  // namespace
 
 Config load_config(const RunRequest& request, const fs::path& folder, ConfigIssues& issues) {
@@ -246,6 +256,7 @@ Config load_config_parts(const RunRequest& request, const fs::path& folder, Conf
   ConfigReader::read(tree, config, read);
   if (read.empty()) check_motions(config.autonomy.motions, config.robot, read);
   if (read.empty()) check_gait(config.autonomy, read);
+  take_goal_from_world(config);
   read = without_absent_groups(std::move(read), request, issues);
   issues.insert(issues.end(), read.begin(), read.end());
   return config;

@@ -84,7 +84,7 @@ struct MissionConfig {
 
   Kind kind = Kind::kStand;
   control::GaitKind gait = control::GaitKind::kTrot;  // cross: how the legs move
-  double goal_x_m = 0;          // ahead of the start, along the start's heading; see waypoints
+  double goal_x_m = 0;          // ahead of the start, along its heading; see waypoints
   double goal_tolerance_m = 0;  // by the robot's own estimate
   double speed_m_s = 0;
   double line_gain_1_s = 0;  // back to the line from start to goal
@@ -108,7 +108,7 @@ struct MissionConfig {
   static void describe(Self& self, Visitor& visit) {
     visit.choice("kind", self.kind, kKindNames, "what to do");
     visit.choice("gait", self.gait, control::kGaitNames, "cross: how the legs move");
-    visit.real("goal_x_m", self.goal_x_m, {0.0, 1000.0}, "ahead of the start");
+    visit.real("goal_x_m", self.goal_x_m, {0.0, 1000.0}, "ahead of the start; 0: the world's");
     visit.real("goal_tolerance_m", self.goal_tolerance_m, {0.001, 10.0}, "by own estimate");
     visit.real("speed_m_s", self.speed_m_s, {0.0, 4.0}, "commanded");
     visit.real("line_gain_1_s", self.line_gain_1_s, {0.0, 10.0}, "back to the line");

@@ -8,6 +8,29 @@
 
 namespace surefoot::sim {
 
+double half_extent(const TerrainBox& box, double c, double s) {
+  const double along = std::fabs(box.cos_yaw * c + box.sin_yaw * s);
+  const double across = std::fabs(box.cos_yaw * s - box.sin_yaw * c);
+  return along * box.half_length_m + across * box.half_width_m;
+}
+
+namespace {
+
+bool separated_along(const TerrainBox& a, const TerrainBox& b, double c, double s) {
+  const double distance = std::fabs((b.x_m - a.x_m) * c + (b.y_m - a.y_m) * s);
+  return distance >= half_extent(a, c, s) + half_extent(b, c, s);
+}
+
+}  // namespace
+
+// Separating axes of two rectangles.
+bool overlap(const TerrainBox& a, const TerrainBox& b) {
+  return !separated_along(a, b, a.cos_yaw, a.sin_yaw) &&
+         !separated_along(a, b, -a.sin_yaw, a.cos_yaw) &&
+         !separated_along(a, b, b.cos_yaw, b.sin_yaw) &&
+         !separated_along(a, b, -b.sin_yaw, b.cos_yaw);
+}
+
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -57,25 +80,6 @@ class CoverRaster {
 };
 
 // Half extent of a box along the unit vector (c, s).
-double half_extent(const TerrainBox& box, double c, double s) {
-  const double along = std::fabs(box.cos_yaw * c + box.sin_yaw * s);
-  const double across = std::fabs(box.cos_yaw * s - box.sin_yaw * c);
-  return along * box.half_length_m + across * box.half_width_m;
-}
-
-bool separated_along(const TerrainBox& a, const TerrainBox& b, double c, double s) {
-  const double distance = std::fabs((b.x_m - a.x_m) * c + (b.y_m - a.y_m) * s);
-  return distance >= half_extent(a, c, s) + half_extent(b, c, s);
-}
-
-// Separating axes of two rectangles.
-bool overlap(const TerrainBox& a, const TerrainBox& b) {
-  return !separated_along(a, b, a.cos_yaw, a.sin_yaw) &&
-         !separated_along(a, b, -a.sin_yaw, a.cos_yaw) &&
-         !separated_along(a, b, b.cos_yaw, b.sin_yaw) &&
-         !separated_along(a, b, -b.sin_yaw, b.cos_yaw);
-}
-
 // A box of random size and place, wholly inside the field, standing on the ground.
 TerrainBox draw_box(double height_m, Random& random) {
   TerrainBox box;

@@ -65,6 +65,11 @@ struct Terrain {
   double height_m(double x, double y) const;
 };
 
+// Whether the rectangles of two boxes have a point in common, seen from above.
+bool overlap(const TerrainBox& a, const TerrainBox& b);
+// From the box's centre to its outline along the unit vector (c, s).
+double half_extent(const TerrainBox& box, double c, double s);
+
 // Throws SimulatorError for an unreadable file or a clutter field that cannot be filled.
 Terrain make_terrain(const WorldSpec& spec, std::uint64_t seed);
 
@@ -76,6 +81,7 @@ void make_ramps(double slope_rad, Random& random, Terrain& terrain);
 void make_platform(double height_m, double edge_x_m, Random& random, Terrain& terrain);
 void make_gauntlet(double height_m, double cover, Random& random, Terrain& terrain);
 void make_gap(double length_m, Random& random, Terrain& terrain);
+void make_slabs(double height_m, Random& random, Terrain& terrain);
 void make_height_map(const WorldSpec& spec, Terrain& terrain);
 
 // Part of the clutter field under boxes, on a 1 cm raster.

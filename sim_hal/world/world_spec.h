@@ -19,20 +19,27 @@ enum class Generator : std::uint8_t {
   kPlatform,
   kGap,
   kGauntlet,
+  kRocks,
 };
 
-inline constexpr std::array<const char*, 8> kGeneratorNames{
-    "flat", "steps", "ramps", "clutter", "heightmap", "platform", "gap", "gauntlet"};
+inline constexpr std::array<const char*, 9> kGeneratorNames{
+    "flat", "steps", "ramps", "clutter", "heightmap", "platform", "gap", "gauntlet", "rocks"};
+
+// rocks: slabs stacked flat on each other. The only one so far.
+enum class RockStyle : std::uint8_t { kFlat = 0 };
+inline constexpr std::array<const char*, 1> kRockStyleNames{"flat"};
 
 // The world frame W has its origin on the ground under the robot's start, x towards the goal, y
 // left, z up. Every generated world keeps x < 0.4 m level at z = 0.
 struct WorldSpec {
   Generator generator = Generator::kFlat;
-  double height_m = 0;    // clutter: tallest box top; steps, platform: of it; unused otherwise
-  double cover = 0;       // clutter: fraction of the field under boxes
-  double slope_rad = 0;   // ramps: steepest slope
-  double length_m = 0;    // gap: from edge to edge
-  double scale = 1;       // heightmap: factor on x, y and z of the file
+  double height_m = 0;   // clutter: tallest box top; steps, platform: of it; unused otherwise
+  double cover = 0;      // clutter: fraction of the field under boxes
+  double slope_rad = 0;  // ramps: steepest slope
+  double length_m = 0;   // gap: from edge to edge
+  double scale = 1;      // heightmap: factor on x, y and z of the file
+  RockStyle style = RockStyle::kFlat;
+  double goal_x_m = 3.0;  // of a mission that leaves it to the world
   double friction = 0.6;  // Coulomb coefficient of the whole ground
   std::string file;       // heightmap: .asc, or .png with a .yaml beside it; unused otherwise
 
@@ -44,6 +51,9 @@ struct WorldSpec {
     visit.real("slope_rad", self.slope_rad, {0.0, 0.45}, "ramps: steepest slope");
     visit.real("length_m", self.length_m, {0.0, 1.0}, "gap: from edge to edge");
     visit.real("scale", self.scale, {0.001, 100.0}, "heightmap: factor on x, y and z");
+    visit.choice("style", self.style, kRockStyleNames, "rocks: which kind");
+    visit.real("goal_x_m", self.goal_x_m, {0.1, 1000.0},
+               "of a mission that leaves it to the world");
     visit.real("friction", self.friction, {0.01, 2.0}, "Coulomb coefficient");
     if constexpr (requires { visit.text("file", self.file, "doc"); }) {
       visit.text("file", self.file, "heightmap: .asc or .png; empty otherwise");
@@ -56,6 +66,8 @@ inline constexpr double kGoalX_m = 3.0;
 inline constexpr double kLaneWidth_m = 1.2;
 inline constexpr double kFieldBegin_m = 0.4;
 inline constexpr double kFieldLength_m = 2.3;
+inline constexpr double kBoardLength_m = 1.5;  // rocks: begins where the field does
+inline constexpr double kBoardWidth_m = 0.8;
 inline constexpr double kEdgeX_m = 1.0;  // of platform and gap, on the line to the goal
 
 }  // namespace surefoot::sim

@@ -85,6 +85,22 @@ TEST(ConfigRoot, ARobotThatWalksOneLegAtATimeDoesNotJump) {
             "(control.static_walk.enabled)\n");
 }
 
+TEST(ConfigRoot, AValueWithoutANameIsThatOfTheFirstParameter) {
+  const Config config = loaded(cross("rocks:flat,height=0.04"));
+  EXPECT_EQ(config.world.generator, sim::Generator::kRocks);
+  EXPECT_EQ(config.world.style, sim::RockStyle::kFlat);
+  EXPECT_EQ(config.world.height_m, 0.04);
+  EXPECT_EQ(issues_of(cross("rocks:round")).rfind("--world: world.style: ", 0), 0U);
+}
+
+TEST(ConfigRoot, AMissionThatCrossesGoesToTheGoalOfItsWorldUnlessItHasOne) {
+  EXPECT_EQ(loaded(cross("flat")).autonomy.mission.goal_x_m, 3.0);
+  EXPECT_EQ(loaded(cross("rocks:flat")).autonomy.mission.goal_x_m, 2.2);
+  RunRequest request = cross("rocks:flat");
+  request.sets = {"mission.goal_x_m=1.0"};
+  EXPECT_EQ(loaded(request).autonomy.mission.goal_x_m, 1.0);
+}
+
 TEST(ConfigRoot, WrongWorldParameters) {
   EXPECT_EQ(issues_of(cross("flat:height=0.05")),
             "--world: world.height: not a parameter of this world; allowed: friction\n");

@@ -33,6 +33,37 @@ std::array<Vector2, 4> corners(const TerrainBox& box) {
   return result;
 }
 
+TEST(World, SlabsFillTheBoardAndReachExactlyTheirHeight) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Terrain terrain = make_terrain(spec(Generator::kRocks, 0.06), seed);
+    double tallest = 0;
+    for (const TerrainBox& slab : terrain.boxes) {
+      EXPECT_EQ(slab.bottom_m, 0.0);
+      tallest = std::max(tallest, slab.top_m);
+      for (const Vector2& corner : corners(slab)) {
+        EXPECT_GE(corner.x(), kFieldBegin_m - 1e-9);
+        EXPECT_LE(corner.x(), kFieldBegin_m + kBoardLength_m + 1e-9);
+        EXPECT_LE(std::fabs(corner.y()), kBoardWidth_m / 2 + 1e-9);
+      }
+    }
+    EXPECT_NEAR(tallest, 0.06, 1e-12) << seed;
+    int covered = 0;
+    int levels = 0;
+    double last = 0;
+    constexpr int kSamples = 3000;
+    Random random(seed);
+    for (int i = 0; i < kSamples; ++i) {
+      const double x = random.uniform(kFieldBegin_m, kFieldBegin_m + kBoardLength_m);
+      const double z = terrain.height_m(x, random.uniform(-kBoardWidth_m / 2, kBoardWidth_m / 2));
+      covered += z > 0 ? 1 : 0;
+      levels += z != last ? 1 : 0;
+      last = z;
+    }
+    EXPECT_GT(covered, 0.7 * kSamples) << seed;
+    EXPECT_GT(levels, 0.5 * kSamples) << seed;
+  }
+}
+
 TEST(World, ClutterKeepsItsPromises) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const double height = seed % 2 == 0 ? 0.05 : 0.10;
