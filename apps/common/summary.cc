@@ -37,6 +37,7 @@ Json counters_json(const RunFacts& facts) {
           {"static_steps", facts.static_walk.steps},
           {"static_steps_missed", facts.static_walk.missed},
           {"static_steps_narrow", facts.static_walk.narrow},
+          {"static_steps_slipped", facts.static_walk.slipped},
           {"static_steps_lowered", facts.static_walk.lowered}};
 }
 

@@ -147,6 +147,7 @@ struct StaticWalkConfig {
   double foot_speed_m_s = 0;   // mean speed on the way up, over and down
   double max_stride_m = 0;     // way of the trunk while each leg steps once
   double margin_m = 0;         // of the centre of mass inside the triangle of the standing feet
+  double slip_m = 0;           // a standing foot moved by more: the one in the air comes down
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -157,6 +158,7 @@ struct StaticWalkConfig {
     visit.real("foot_speed_m_s", self.foot_speed_m_s, {0.01, 5.0}, "mean, of a swinging foot");
     visit.real("max_stride_m", self.max_stride_m, {0.005, 2.0}, "way of the trunk per four steps");
     visit.real("margin_m", self.margin_m, {0.0, 0.5}, "of the centre of mass in the triangle");
+    visit.real("slip_m", self.slip_m, {0.001, 0.5}, "of a standing foot: put the other one down");
   }
 };
 

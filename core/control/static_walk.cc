@@ -1,5 +1,7 @@
 #include "core/control/static_walk.h"
 
+#include <algorithm>
+
 #include "core/control/joint_commands.h"
 #include "core/control/quintic.h"
 #include "core/geometry/rotations.h"
@@ -264,21 +266,40 @@ void StaticWalk::lift(const estimation::RobotState& state, const mapping::MapWin
 
 void StaticWalk::swing(const estimation::RobotState& state, double step_s) {
   LegStatus& status = legs_[leg()];
-  const bool contact = state.feet[leg()].in_contact;
+  const estimation::FootState& foot = state.feet[leg()];
   if (status.mode == LegMode::kSwing) {
     status.swing_progress += step_s / status.swing_s;
-    if (contact && status.swing_progress >= kFeelsGround) return put_down(state);
-    if (status.swing_progress >= 1.0) {
-      status.mode = LegMode::kSearch;
-      status.anchor_O_m = status.path.landing_O_m;
-      status.searched_m = 0;
+    if (foot.in_contact && status.swing_progress >= kFeelsGround) return put_down(state);
+    if (has_slipped(state)) {
+      ++counters_.slipped;
+      begin_search(foot.p_O_m);
+    } else if (status.swing_progress >= 1.0) {
+      begin_search(status.path.landing_O_m);
     }
   } else {
     status.searched_m += config_.swing.search_speed_m_s * step_s;
-    if (contact) return put_down(state);
-    if (status.searched_m >= config_.swing.search_depth_m) return go_back(state);
+    if (foot.in_contact) return put_down(state);
+    const double lowest_m = std::min(status.path.lift_off_O_m[2], status.path.landing_O_m[2]);
+    const double depth_m = config_.swing.search_depth_m + status.anchor_O_m[2] - lowest_m;
+    if (status.searched_m >= depth_m) return go_back(state);
   }
-  status.height_above_landing_m = state.feet[leg()].p_O_m[2] - status.path.landing_O_m[2];
+  status.height_above_landing_m = foot.p_O_m[2] - status.path.landing_O_m[2];
+}
+
+void StaticWalk::begin_search(const Vector3& from_O_m) {
+  LegStatus& status = legs_[leg()];
+  status.mode = LegMode::kSearch;
+  status.anchor_O_m = from_O_m;
+  status.searched_m = 0;
+}
+
+bool StaticWalk::has_slipped(const estimation::RobotState& state) const {
+  const double limit_m2 = math::square(config_.static_walk.slip_m);
+  for (std::size_t i = 0; i < robot::kLegs; ++i) {
+    if (i == leg()) continue;
+    if ((state.feet[i].p_O_m - feet_O_m_[i]).squaredNorm() > limit_m2) return true;
+  }
+  return false;
 }
 
 // To where it has stood, which bears a foot.

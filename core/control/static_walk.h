@@ -8,7 +8,8 @@
 //   shift  the centre of mass moves into the triangle of the feet that will stand and, where both
 //          have room in common, into that of the next step, so that this one needs no shift
 //   swing  the foot goes up, over and down to its foothold; then straight down until it feels ground
-// A foot that finds no ground goes back to where it came from and the step is planned anew.
+// A foot that finds no ground goes back to where it came from and the step is planned anew. When a
+// standing foot slips, the one in the air comes down where it is.
 // Without a foothold the robot stands and blocked_s() counts.
 //
 // Frames: O, metres, N. Memory: sizeof(StaticWalk) 22 kB, most of it WholeBody. Cost per tick: one
@@ -35,6 +36,7 @@ struct StaticWalkCounters {
   std::uint64_t steps = 0;
   std::uint64_t missed = 0;   // no ground where it should be: the foot went back
   std::uint64_t narrow = 0;   // the margin had to be cut to find room over the feet
+  std::uint64_t slipped = 0;  // a standing foot gave way while another was in the air
   std::uint64_t lowered = 0;  // a stance leg could not have reached: the trunk was lowered
 
   template <class Self, class Visitor>
@@ -42,6 +44,7 @@ struct StaticWalkCounters {
     visit("steps", self.steps);
     visit("missed", self.missed);
     visit("narrow", self.narrow);
+    visit("slipped", self.slipped);
     visit("lowered", self.lowered);
   }
 };
@@ -100,6 +103,8 @@ class StaticWalk {
   Vector2 centre_offset_O_m(const estimation::RobotState& state) const;
   void lift(const estimation::RobotState& state, const mapping::MapWindow* window);
   void swing(const estimation::RobotState& state, double step_s);
+  bool has_slipped(const estimation::RobotState& state) const;
+  void begin_search(const Vector3& from_O_m);
   void go_back(const estimation::RobotState& state);
   void put_down(const estimation::RobotState& state);
   SwingPoint foot_target() const;

@@ -30,7 +30,8 @@ inline control::ControlConfig static_walk_config() {
                    .swing_s = 0.3,
                    .foot_speed_m_s = 0.5,
                    .max_stride_m = 0.12,
-                   .margin_m = 0.02};
+                   .margin_m = 0.02,
+                   .slip_m = 0.012};
   c.whole_body.friction = 0.4;
   c.whole_body.max_normal_N = 40;
   c.whole_body.position_gain_1_s2 = {100, 100, 100};

@@ -104,6 +104,25 @@ TEST(StaticWalk, AFootThatFindsNoGroundGoesBack) {
   EXPECT_LT((world.state.feet[robot::kHindRight].p_O_m - home).norm(), 0.005);
 }
 
+// A standing foot slides off its edge: the foot in the air comes down there, and the walk goes on from
+// where the feet are.
+TEST(StaticWalk, PutsTheFootDownWhenAnotherOneSlips) {
+  StaticWalkWorld world;
+  for (int i = 0; i < 1000 && world.in_the_air() == 0; ++i) world.tick(forward(0.06), true);
+  for (int i = 0; i < 50; ++i) world.tick(forward(0.06), true);
+  ASSERT_EQ(world.walk->legs()[robot::kHindRight].mode, LegMode::kSwing);
+  world.state.feet[robot::kFrontLeft].p_O_m += Vector3(0.02, 0.0, -0.01);
+  world.tick(forward(0.06), true);
+  EXPECT_EQ(world.walk->legs()[robot::kHindRight].mode, LegMode::kSearch);
+  EXPECT_EQ(world.walk->counters().slipped, 1U);
+  const Vector2 above = world.state.feet[robot::kHindRight].p_O_m.head<2>();
+  for (int i = 0; i < 1000 && world.in_the_air() > 0; ++i) world.tick({}, false);
+  EXPECT_TRUE(world.walk->at_rest());
+  EXPECT_LT((world.state.feet[robot::kHindRight].p_O_m.head<2>() - above).norm(), 0.01);
+  for (int i = 0; i < 2000; ++i) world.tick(forward(0.06), true);
+  EXPECT_GE(world.walk->counters().steps, 6U);
+}
+
 TEST(StaticWalk, StandsAndCountsWhereNoFootholdIs) {
   StaticWalkWorld world;
   auto window = std::make_unique<mapping::MapWindow>();
