@@ -51,8 +51,8 @@ Foothold FootholdPlanner::choose(const Vector3& nominal_O_m, const mapping::MapW
     foothold.reason = FootholdReason::kMapOff;
     return foothold;
   }
-  // Ground that may be trusted unseen is no worse than what was seen beside it. A foot that is drawn
-  // in to the edge of the seen ground makes the stance too narrow for a shove.
+  // Ground that may be trusted unseen is no worse than what was seen beside it. A foot that is
+  // drawn in to the edge of the seen ground makes the stance too narrow for a shove.
   if (ground != GroundRule::kGood && !classed(*window, nominal_O_m)) {
     foothold.reason = FootholdReason::kUnseen;
     return foothold;

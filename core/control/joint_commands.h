@@ -1,4 +1,5 @@
-// From whole-body control to the drives: what a standing leg and one in the air ask of their joints.
+// From whole-body control to the drives: what a standing leg and one in the air ask of their
+// joints.
 #pragma once
 
 #include "core/actuation/joint_bus.h"

@@ -7,7 +7,8 @@
 // Legs step in the order hind right, front right, hind left, front left. Each step:
 //   shift  the centre of mass moves into the triangle of the feet that will stand and, where both
 //          have room in common, into that of the next step, so that this one needs no shift
-//   swing  the foot goes up, over and down to its foothold; then straight down until it feels ground
+//   swing  the foot goes up, over and down to its foothold; then straight down until it feels
+//          ground
 // A foot that finds no ground goes back to where it came from and the step is planned anew. When a
 // standing foot slips, the one in the air comes down where it is.
 // Without a foothold the robot stands and blocked_s() counts.

@@ -23,8 +23,8 @@ struct SwingPoint {
   Vector3 acceleration_O_m_s2 = Vector3::Zero();
 };
 
-// z at which the foot clears both ends and the highest ground that the map knows between them, within
-// a foot's diameter of the way. window: null when mapping is off.
+// z at which the foot clears both ends and the highest ground that the map knows between them,
+// within a foot's diameter of the way. window: null when mapping is off.
 double apex_O_m(const SwingPath& path, const mapping::MapWindow* window,
                 const robot::RobotModel& model, double clearance_m, double map_offset_m);
 

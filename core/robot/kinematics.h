@@ -30,10 +30,10 @@ struct LegPoints {
 };
 LegPoints leg_points_B(const RobotModel& model, std::size_t leg, const LegVector& q_rad);
 
-// Joint angles that put the foot centre at p_B_m, the knee bent as the robot's knees are (angle times
-// bend_sign > 0), the foot below the hip in the leg's plane. Out of reach, the target is pulled onto the reachable shell,
-// min_reach .. max_reach from the hip, and the status says kOutOfRange; the angles are valid all
-// the same.
+// Joint angles that put the foot centre at p_B_m, the knee bent as the robot's knees are (angle
+// times bend_sign > 0), the foot below the hip in the leg's plane. Out of reach, the target is
+// pulled onto the reachable shell, min_reach .. max_reach from the hip, and the status says
+// kOutOfRange; the angles are valid all the same.
 struct LegSolution {
   LegVector q_rad;
   Status status;

@@ -4,9 +4,9 @@
 // Frames (docs/frames_and_units.md): B has its origin at the centre of the trunk's four abduction
 // joints, x forward, y left, z up. Legs are numbered FR, FL, HR, HL = 0..3, joints abad, hip, knee
 // = 0..2. All joint angles are zero with the legs straight down. Abduction turns about +x of B, hip
-// and knee about -y (a positive hip angle swings the foot forward). Link data, joint stops and poses
-// are given for the FRONT LEFT leg; a right leg mirrors y and, where the hind knees point forward, a
-// hind leg mirrors x.
+// and knee about -y (a positive hip angle swings the foot forward). Link data, joint stops and
+// poses are given for the FRONT LEFT leg; a right leg mirrors y and, where the hind knees point
+// forward, a hind leg mirrors x.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// A LittleDog that does exactly what its joints are told, for tests of the static walk: the trunk is
-// where the standing legs put it, feet stop at the ground. No forces.
+// A LittleDog that does exactly what its joints are told, for tests of the static walk: the trunk
+// is where the standing legs put it, feet stop at the ground. No forces.
 #pragma once
 
 #include <memory>

@@ -104,8 +104,8 @@ TEST(StaticWalk, AFootThatFindsNoGroundGoesBack) {
   EXPECT_LT((world.state.feet[robot::kHindRight].p_O_m - home).norm(), 0.005);
 }
 
-// A standing foot slides off its edge: the foot in the air comes down there, and the walk goes on from
-// where the feet are.
+// A standing foot slides off its edge: the foot in the air comes down there, and the walk goes on
+// from where the feet are.
 TEST(StaticWalk, PutsTheFootDownWhenAnotherOneSlips) {
   StaticWalkWorld world;
   for (int i = 0; i < 1000 && world.in_the_air() == 0; ++i) world.tick(forward(0.06), true);

@@ -16,11 +16,15 @@ Triangle triangle(double ax, double ay, double bx, double by, double cx, double 
   return {{Vector2(ax, ay), Vector2(bx, by), Vector2(cx, cy)}};
 }
 
+Vector2 random_point(Random& random, double size) {
+  Vector2 point;
+  for (int axis = 0; axis < 2; ++axis) point[axis] = random.uniform(-size, size);
+  return point;
+}
+
 Triangle random_triangle(Random& random) {
   Triangle result;
-  for (Vector2& corner : result.corners_O_m) {
-    corner = Vector2(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2));
-  }
+  for (Vector2& corner : result.corners_O_m) corner = random_point(random, 0.2);
   return result;
 }
 
@@ -46,7 +50,7 @@ TEST(SupportRegion, NearestPointBeatsEveryPointOfADenseGrid) {
     std::vector<Triangle> triangles{random_triangle(random)};
     if (draw % 2 == 1) triangles.push_back(random_triangle(random));
     const double margin = random.uniform(0.0, 0.03);
-    const Vector2 wanted(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4));
+    const Vector2 wanted = random_point(random, 0.4);
     SupportRegion region;
     for (const Triangle& t : triangles) ASSERT_EQ(region.add(t, margin), Status::kOk);
     double best = std::numeric_limits<double>::infinity();

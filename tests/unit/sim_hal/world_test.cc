@@ -54,7 +54,8 @@ TEST(World, SlabsFillTheBoardAndReachExactlyTheirHeight) {
     Random random(seed);
     for (int i = 0; i < kSamples; ++i) {
       const double x = random.uniform(kFieldBegin_m, kFieldBegin_m + kBoardLength_m);
-      const double z = terrain.height_m(x, random.uniform(-kBoardWidth_m / 2, kBoardWidth_m / 2));
+      const double y = random.uniform(-kBoardWidth_m / 2, kBoardWidth_m / 2);
+      const double z = terrain.height_m(x, y);
       covered += z > 0 ? 1 : 0;
       levels += z != last ? 1 : 0;
       last = z;
