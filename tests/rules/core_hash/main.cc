@@ -23,6 +23,7 @@ constexpr Workload kWorkloads[] = {
     {"registration", surefoot::tests::hash_registration},
     {"stereo", surefoot::tests::hash_stereo},
     {"mapping", surefoot::tests::hash_mapping},
+    {"terrain", surefoot::tests::hash_terrain},
     {"swing", surefoot::tests::hash_swing},
     {"convex_mpc", surefoot::tests::hash_convex_mpc},
     {"whole_body", surefoot::tests::hash_whole_body},
