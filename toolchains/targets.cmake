@@ -41,4 +41,8 @@ if(NOT SUREFOOT_CORE_ONLY)
   find_library(OPENCV_calib3d opencv_calib3d REQUIRED)
   add_library(surefoot_opencv_calib3d INTERFACE)
   target_link_libraries(surefoot_opencv_calib3d INTERFACE surefoot_opencv ${OPENCV_calib3d})
+  # Inpainting, for a comparison in surefoot-lab only.
+  find_library(OPENCV_photo opencv_photo REQUIRED)
+  add_library(surefoot_opencv_photo INTERFACE)
+  target_link_libraries(surefoot_opencv_photo INTERFACE surefoot_opencv ${OPENCV_photo})
 endif()

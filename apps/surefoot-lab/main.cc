@@ -9,6 +9,7 @@
 #include "apps/surefoot-lab/bench.h"
 #include "apps/surefoot-lab/campaign.h"
 #include "apps/surefoot-lab/eval_registration.h"
+#include "apps/surefoot-lab/eval_terrain_fill.h"
 #include "apps/surefoot-lab/eval_traversability.h"
 #include "apps/surefoot-lab/export.h"
 #include "apps/surefoot-lab/jump/motion_command.h"
@@ -26,11 +27,15 @@ struct Arguments {
   MotionOptions motion;
   TraversabilityOptions traversability;
   RegistrationOptions registration;
+  TerrainFillOptions terrain_fill;
+  std::string library_seeds;
+  std::string test_seeds;
 };
 
 struct EvalCommands {
   CLI::App* traversability = nullptr;
   CLI::App* registration = nullptr;
+  CLI::App* terrain_fill = nullptr;
 };
 
 CLI::App* add_campaign(CLI::App& app, Arguments& arguments) {
@@ -70,6 +75,39 @@ CLI::App* add_eval_registration(CLI::App& eval, Arguments& arguments) {
   return command;
 }
 
+CLI::App* add_eval_terrain_fill(CLI::App& eval, Arguments& arguments) {
+  CLI::App* command =
+      eval.add_subcommand("terrain-fill", "fills of unseen rocks compared; JSON and pictures");
+  TerrainFillOptions& options = arguments.terrain_fill;
+  arguments.library_seeds = "1..10";
+  arguments.test_seeds = "11..20";
+  command->add_option("--library-seeds", arguments.library_seeds, "A..B, what is learned from")
+      ->capture_default_str();
+  command->add_option("--test-seeds", arguments.test_seeds, "C..D, what is filled")
+      ->capture_default_str();
+  command->add_option("--resolution", options.resolution_m, "side of a cell, m")
+      ->capture_default_str();
+  command->add_option("--noise", options.noise_m, "standard deviation of heights and ceilings, m")
+      ->check(CLI::Range(0.0, 0.1))
+      ->capture_default_str();
+  command->add_option("--jobs", options.jobs, "terrains at a time")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  command->add_option("--bodies", options.bodies, "rocks of a generated square metre")
+      ->check(CLI::Range(1, 2000))
+      ->capture_default_str();
+  command->add_option(
+      "--terrain", options.terrain,
+      "recorded grid (.asc, .png) to take library and tests from, instead of rocks");
+  command->add_option("--scale", options.scale, "of the recorded grid")
+      ->check(CLI::Range(0.001, 10.0))
+      ->capture_default_str();
+  command->add_option("--cache", options.cache, "folder that keeps generated terrain")
+      ->capture_default_str();
+  command->add_option("--out", options.out, "folder for the results");
+  return command;
+}
+
 EvalCommands add_eval(CLI::App& app, Arguments& arguments) {
   CLI::App* command = app.add_subcommand("eval", "experiments on data");
   command->require_subcommand(1);
@@ -82,7 +120,8 @@ EvalCommands add_eval(CLI::App& app, Arguments& arguments) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   classes->add_option("--out", options.out, "folder for the results");
-  return {classes, add_eval_registration(*command, arguments)};
+  return {classes, add_eval_registration(*command, arguments),
+          add_eval_terrain_fill(*command, arguments)};
 }
 
 int run_campaign(Arguments& arguments) {
@@ -107,14 +146,29 @@ int run_eval_registration(Arguments& arguments) {
   return eval_registration(arguments.registration);
 }
 
+int run_eval_terrain_fill(Arguments& arguments) {
+  TerrainFillOptions& options = arguments.terrain_fill;
+  const auto library = parse_seeds(arguments.library_seeds);
+  const auto test = parse_seeds(arguments.test_seeds);
+  if (!library || !test) {
+    std::fputs("--library-seeds, --test-seeds: not A..B\n", stderr);
+    return 2;
+  }
+  options.first_library_seed = library->first;
+  options.last_library_seed = library->last;
+  options.first_test_seed = test->first;
+  options.last_test_seed = test->last;
+  return eval_terrain_fill(options);
+}
+
 int dispatch(int argc, char** argv, Stack& stack) {
   CLI::App app("Campaigns, benchmarks and conversions. Manual: docs/running.md");
   app.require_subcommand(1);
   app.set_version_flag("--version", version_text());
   Arguments arguments;
   CLI::App* campaign_command = add_campaign(app, arguments);
-  CLI::App* bench_command =
-      app.add_subcommand("bench", "benchmarks: run, pictures, mapping, registration, mpc, stereo");
+  CLI::App* bench_command = app.add_subcommand(
+      "bench", "benchmarks: run, pictures, mapping, registration, mpc, stereo, terrain");
   bench_command->add_option("NAME", arguments.bench_name, "one of them; all when left out");
   const EvalCommands eval = add_eval(app, arguments);
   CLI::App* export_command = app.add_subcommand("export", "converts a record");
@@ -136,6 +190,7 @@ int dispatch(int argc, char** argv, Stack& stack) {
   if (campaign_command->parsed()) return run_campaign(arguments);
   if (bench_command->parsed()) return bench(arguments.bench_name, stack);
   if (eval.registration->parsed()) return run_eval_registration(arguments);
+  if (eval.terrain_fill->parsed()) return run_eval_terrain_fill(arguments);
   if (eval.traversability->parsed()) return eval_traversability(arguments.traversability);
   if (motion_command->parsed()) return make_motion_file(arguments.motion);
   return export_command->parsed()

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 #include "tests/integration/program.h"
 
@@ -52,6 +53,49 @@ TEST(Lab, RegistrationOfBoardsIsMeasuredFromBothStarts) {
   EXPECT_TRUE(fs::exists(scratch.path("boards") / "registration.png"));
   EXPECT_EQ(run_program("surefoot-lab eval registration --seeds 3..1").code, 2);
   EXPECT_EQ(run_program("surefoot-lab eval registration --points 1").code, 2);
+}
+
+// Few rocks and large cells: what is written, and that it is the same again with other threads.
+TEST(Lab, FillsOfUnseenRocksAreCompared) {
+  const Scratch scratch;
+  const std::string command =
+      "surefoot-lab eval terrain-fill --library-seeds 1..2 --test-seeds 3..4 --bodies 40 "
+      "--resolution 0.02 --cache " +
+      scratch.text("rocks");
+  std::vector<nlohmann::json> results;
+  for (const std::string jobs : {"2", "1"}) {
+    const ProgramResult result =
+        run_program(command + " --jobs " + jobs + " --out " + scratch.text(jobs.c_str()));
+    ASSERT_EQ(result.code, 0) << result.error;
+    results.push_back(read_json(scratch.path(jobs.c_str()) / "terrain-fill.json"));
+    EXPECT_TRUE(fs::exists(scratch.path(jobs.c_str()) / "terrain.png"));
+    EXPECT_TRUE(fs::exists(scratch.path(jobs.c_str()) / "fills.png"));
+  }
+  const nlohmann::json& json = results[0];
+  EXPECT_EQ(json["resolution_m"], 0.02);
+  for (const char* method : {"paper_literal", "paper", "improved", "ignore_missing",
+                             "constraints_as_heights", "unconstrained", "best_constant",
+                             "clipped_inpainting", "minimum_spread", "smoothed_minimum_spread"}) {
+    const nlohmann::json& of = json["methods"][method];
+    EXPECT_GT(of["cost_rmse_visible"].get<double>(), 0) << method;
+    EXPECT_EQ(of["cost_rmse_occluded"].is_null(), std::string(method) == "ignore_missing");
+    EXPECT_EQ(of["height_rmse_occluded_m"].is_null(), std::string(method) == "ignore_missing");
+    EXPECT_TRUE(of["us_per_cell"].is_number());
+    for (nlohmann::json& result : results) result["methods"][method].erase("us_per_cell");
+  }
+  for (const char* method :
+       {"paper", "improved", "constraints_as_heights", "minimum_spread", "clipped_inpainting"}) {
+    EXPECT_EQ(json["methods"][method]["sight_violations"], 0) << method;
+  }
+  EXPECT_GT(json["methods"]["unconstrained"]["sight_violations"], 0);
+  EXPECT_GT(json["p_value"].get<double>(), 0);
+  EXPECT_LE(json["p_value"].get<double>(), 1);
+  EXPECT_EQ(json["cells"]["truth_above_ceiling_share"], 0.0);
+  EXPECT_EQ(results[0], results[1]);
+
+  EXPECT_EQ(run_program("surefoot-lab eval terrain-fill --library-seeds 3..1").code, 2);
+  EXPECT_EQ(run_program("surefoot-lab eval terrain-fill --resolution 0.0123").code, 2);
+  EXPECT_EQ(run_program("surefoot-lab eval terrain-fill --terrain nowhere.asc").code, 2);
 }
 
 // Three levels: ground, a ledge of one step too many, a wall; and a corner without data.

@@ -1,0 +1,108 @@
+#include "apps/surefoot-lab/bench_terrain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+#include <vector>
+
+#include "apps/common/statistics.h"
+#include "apps/surefoot-lab/terrain/fill_methods.h"
+#include "core/terrain/cost.h"
+#include "core/terrain/fill.h"
+#include "tests/support/terrain_parts.h"
+
+namespace surefoot::apps {
+namespace {
+
+constexpr int kRounds = 15;
+constexpr std::int32_t kSide = 100;
+constexpr std::int32_t kUnseen = 3000;
+constexpr int kCell_mm = 10;
+constexpr std::int64_t kSlice = 10'000;  // units of work per call
+constexpr double kMaxTotal_ms = 50;
+constexpr double kMaxSlice_ms = 2;
+
+double processor_ms() {
+  std::timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+// Shadows of 6 x 10 cells, evenly spread.
+void make_window(terrain::TerrainGrid& grid) {
+  const std::vector<float> heights = tests::rough_heights(1, kSide, kSide);
+  (void)grid.reset(kSide, kSide, 1e-3 * kCell_mm);
+  std::int32_t unseen = 0;
+  for (std::int32_t row = 0; row < kSide; ++row) {
+    for (std::int32_t column = 0; column < kSide; ++column) {
+      const std::size_t i = grid.index(column, row);
+      if (column % 20 < 6 && unseen < kUnseen) {
+        grid.bound(i, heights[i] + 0.02f);
+        ++unseen;
+      } else {
+        grid.measure(i, heights[i]);
+      }
+    }
+  }
+}
+
+struct Times {
+  std::vector<double> total_ms;
+  std::vector<double> start_ms;
+  std::vector<double> slice_ms;  // the longest of a round
+  int slices = 0;
+};
+
+}  // namespace
+
+int bench_terrain() {
+  const auto grid = std::make_unique<terrain::TerrainGrid>();
+  const auto library = std::make_unique<terrain::PatchLibrary>();
+  const auto filler = std::make_unique<terrain::TerrainFiller>();
+  const auto map = std::make_unique<terrain::CostMap>();
+  make_window(*grid);
+  const terrain::FillConfig config = improved_config(kCell_mm);
+  tests::fill_library(10, kSide, kSide, 1e-3 * kCell_mm, config.patch_cells, *library);
+  const terrain::HeightPrior prior =
+      tests::some_prior(1e-3 * kCell_mm, prior_options(kCell_mm).radius);
+  if (!ok(filler->configure(config)) || !ok(map->configure(cost_config(kCell_mm)))) return 3;
+  Times times;
+  std::vector<double> cost_ms;
+  for (int round = 0; round < kRounds; ++round) {
+    const double begin = processor_ms();
+    if (!ok(filler->start(*grid, *library, prior, 0))) return 3;
+    times.start_ms.push_back(processor_ms() - begin);
+    double longest = times.start_ms.back();
+    times.slices = 0;
+    for (bool done = false; !done; ++times.slices) {
+      const double slice = processor_ms();
+      done = filler->advance(kSlice);
+      longest = std::max(longest, processor_ms() - slice);
+    }
+    times.total_ms.push_back(processor_ms() - begin);
+    times.slice_ms.push_back(longest);
+    const double cost_begin = processor_ms();
+    (void)map->start();
+    (void)map->add(terrain::view_of(filler->result()));
+    (void)map->advance(kSide);
+    cost_ms.push_back(processor_ms() - cost_begin);
+  }
+  std::fputs(
+      fmt::format("terrain: {} unseen of {} cells, {} draws of {} patches of {} x {}: median "
+                  "{:.1f} ms in all ({:.1f} us a cell), {} slices, the longest {:.2f} ms, start "
+                  "{:.2f} ms; cost of one view {:.1f} ms\n",
+                  filler->counts().unseen, grid->size(), config.draws, config.samples,
+                  config.patch_cells, config.patch_cells, median(times.total_ms),
+                  1e3 * median(times.total_ms) / filler->counts().unseen, times.slices,
+                  median(times.slice_ms), median(times.start_ms), median(cost_ms))
+          .c_str(),
+      stdout);
+  const bool good =
+      median(times.total_ms) <= kMaxTotal_ms && median(times.slice_ms) <= kMaxSlice_ms;
+  return good ? 0 : 3;
+}
+
+}  // namespace surefoot::apps
