@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <memory>
 #include <vector>
 
 #include "apps/common/statistics.h"
+#include "apps/surefoot-lab/stopwatch.h"
 #include "apps/surefoot-lab/terrain/fill_methods.h"
 #include "core/terrain/cost.h"
 #include "core/terrain/fill.h"
@@ -25,11 +25,7 @@ constexpr std::int64_t kSlice = 10'000;  // units of work per call
 constexpr double kMaxTotal_ms = 50;
 constexpr double kMaxSlice_ms = 2;
 
-double processor_ms() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
+double processor_ms() { return 1e-3 * processor_us(); }
 
 // Shadows of 6 x 10 cells, evenly spread.
 void make_window(terrain::TerrainGrid& grid) {

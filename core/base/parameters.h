@@ -42,7 +42,19 @@ struct RangeCheck {
   void integer(const char* key, const Integer& value, Range range, const char* doc) {
     real(key, static_cast<double>(value), range, doc);
   }
+  template <class Numbers>
+  void reals(const char* key, const Numbers& values, Range range, const char* doc) {
+    for (const double value : values) real(key, value, range, doc);
+  }
   void boolean(const char*, const bool&, const char*) {}
+  template <class Enum, class Names>
+  void choice(const char*, const Enum& value, const Names& names, const char*) {
+    good = good && static_cast<std::size_t>(value) < std::size(names);
+  }
+  template <class Group>
+  void group(const char*, const Group& value) {
+    Group::describe(value, *this);
+  }
 
   bool good = true;
 };

@@ -6,18 +6,6 @@ namespace surefoot::terrain {
 
 namespace {
 
-struct CostRangeCheck {
-  void reals(const char*, const std::array<double, kCostWindows>& values, Range range,
-             const char*) {
-    for (const double value : values) good = good && value >= range.low && value <= range.high;
-  }
-  template <class Group>
-  void group(const char*, const Group& value) {
-    Group::describe(value, *this);
-  }
-  bool good = true;
-};
-
 // Sums over the cells of a window, positions and heights relative to its middle cell.
 struct Moments {
   double n = 0;
@@ -65,7 +53,7 @@ struct Moments {
 }  // namespace
 
 Status validate(const CostConfig& config) {
-  CostRangeCheck check;
+  RangeCheck check;
   CostConfig::describe(config, check);
   double last = 0;
   for (const double radius : config.radius_cells) {

@@ -1,16 +1,10 @@
 #include "core/terrain/patch_target.h"
 
-#include "core/mapping/lanes.h"
+#include "core/math/lanes.h"
 
 namespace surefoot::terrain {
 
 namespace {
-
-using mapping::all_lanes;
-using mapping::kLanes;
-using mapping::Lanes;
-using mapping::larger;
-using mapping::load_lanes;
 
 float total(Lanes lanes) { return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]); }
 

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <stdexcept>
+
+#include "apps/surefoot-lab/stopwatch.h"
 
 namespace surefoot::apps {
 namespace {
@@ -41,12 +42,6 @@ struct Errors {
     return std::sqrt(std::max(true_squares / count - true_sum * true_sum / (count * count), 0.0));
   }
 };
-
-double processor_s() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 std::vector<FilledState> states(const TerrainGrid& grid, bool filled) {
   std::vector<FilledState> out(static_cast<std::size_t>(grid.size()), FilledState::kUnknown);
@@ -231,7 +226,7 @@ Completion FillWorker::complete(FillMethod method, const ScannedTerrain& scene) 
   const int cell = material_.cell_mm;
   Completion out;
   out.state = states(grid, method != FillMethod::kIgnoreMissing);
-  const double begin = processor_s();
+  const double begin_us = processor_us();
   switch (method) {
     case FillMethod::kPaperLiteral:
       synthesise(literal_config(cell), *material_.wide, grid, out);
@@ -263,7 +258,7 @@ Completion FillWorker::complete(FillMethod method, const ScannedTerrain& scene) 
     case FillMethod::kMinimumSpread: out.mean = fill_with_minimum(grid); break;
     case FillMethod::kSmoothedMinimumSpread: out.mean = fill_with_smoothed_minimum(grid); break;
   }
-  out.seconds = processor_s() - begin;
+  out.seconds = 1e-6 * (processor_us() - begin_us);
   if (out.draws.empty()) out.draws.push_back(out.mean);
   if (out.spread.empty()) out.spread.assign(out.mean.size(), 0.0f);
   return out;
