@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "sim_hal/world/rock_field.h"
+
 namespace surefoot::apps {
 
 struct TerrainFillOptions {
@@ -15,7 +17,7 @@ struct TerrainFillOptions {
   double noise_m = 0;
   int jobs = 2;
   int bodies = 200;  // of a rock field
-  std::filesystem::path cache = "out/rocks";
+  std::filesystem::path cache = sim::rock_cache_folder();
   // A recorded grid instead of rock fields: one half is the library for the other, and the other
   // way round; each is walked over in both directions.
   std::filesystem::path terrain;

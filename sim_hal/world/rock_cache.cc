@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <string>
@@ -120,6 +121,17 @@ void write_field(const fs::path& path, Header header, const RockField& field) {
 }
 
 }  // namespace
+
+fs::path rock_cache_folder() {
+  const auto named = [](const char* name) {
+    const char* value = std::getenv(name);
+    return fs::path(value != nullptr ? value : "");
+  };
+  if (!named("SUREFOOT_CACHE").empty()) return named("SUREFOOT_CACHE");
+  if (!named("XDG_CACHE_HOME").empty()) return named("XDG_CACHE_HOME") / "surefoot";
+  if (!named("HOME").empty()) return named("HOME") / ".cache" / "surefoot";
+  return fs::temp_directory_path() / "surefoot";
+}
 
 fs::path rock_field_file(const fs::path& folder, const RockFieldOptions& options,
                          std::uint64_t seed) {

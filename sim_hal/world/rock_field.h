@@ -53,6 +53,10 @@ RockField make_rock_field(const RockFieldOptions& options, std::uint64_t seed);
 std::filesystem::path rock_field_file(const std::filesystem::path& folder,
                                       const RockFieldOptions& options, std::uint64_t seed);
 
+// $SUREFOOT_CACHE, else $XDG_CACHE_HOME/surefoot, else ~/.cache/surefoot, else a folder of the
+// system's for temporary files.
+std::filesystem::path rock_cache_folder();
+
 // Reads the field from `folder` or makes it and puts it there. A damaged file is made anew. Files
 // appear whole (written aside, then renamed), so several processes may share a folder.
 // Throws SimulatorError: see above, or the folder cannot be written.

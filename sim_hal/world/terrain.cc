@@ -55,7 +55,7 @@ Terrain make_terrain(const WorldSpec& spec, std::uint64_t seed) {
     case Generator::kPlatform: make_platform(spec.height_m, kEdgeX_m, random, terrain); break;
     case Generator::kGap: make_gap(spec.length_m, random, terrain); break;
     case Generator::kGauntlet: make_gauntlet(spec.height_m, spec.cover, random, terrain); break;
-    case Generator::kRocks: make_slabs(spec.height_m, random, terrain); break;
+    case Generator::kRocks: make_rocks(spec, seed, random, terrain); break;
     case Generator::kHeightMap: make_height_map(spec, terrain); break;
   }
   return terrain;

@@ -81,7 +81,7 @@ void make_ramps(double slope_rad, Random& random, Terrain& terrain);
 void make_platform(double height_m, double edge_x_m, Random& random, Terrain& terrain);
 void make_gauntlet(double height_m, double cover, Random& random, Terrain& terrain);
 void make_gap(double length_m, Random& random, Terrain& terrain);
-void make_slabs(double height_m, Random& random, Terrain& terrain);
+void make_rocks(const WorldSpec& spec, std::uint64_t seed, Random& random, Terrain& terrain);
 void make_height_map(const WorldSpec& spec, Terrain& terrain);
 
 // Part of the clutter field under boxes, on a 1 cm raster.

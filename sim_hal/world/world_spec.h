@@ -25,15 +25,15 @@ enum class Generator : std::uint8_t {
 inline constexpr std::array<const char*, 9> kGeneratorNames{
     "flat", "steps", "ramps", "clutter", "heightmap", "platform", "gap", "gauntlet", "rocks"};
 
-// rocks: slabs stacked flat on each other. The only one so far.
-enum class RockStyle : std::uint8_t { kFlat = 0 };
-inline constexpr std::array<const char*, 1> kRockStyleNames{"flat"};
+// rocks: slabs stacked flat on each other, or convex bodies as they fell (rock_field.h).
+enum class RockStyle : std::uint8_t { kFlat = 0, kJagged };
+inline constexpr std::array<const char*, 2> kRockStyleNames{"flat", "jagged"};
 
 // The world frame W has its origin on the ground under the robot's start, x towards the goal, y
 // left, z up. Every generated world keeps x < 0.4 m level at z = 0.
 struct WorldSpec {
   Generator generator = Generator::kFlat;
-  double height_m = 0;   // clutter: tallest box top; steps, platform: of it; unused otherwise
+  double height_m = 0;   // clutter, steps: tallest; platform: of it; rocks: range, 0: usual
   double cover = 0;      // clutter: fraction of the field under boxes
   double slope_rad = 0;  // ramps: steepest slope
   double length_m = 0;   // gap: from edge to edge

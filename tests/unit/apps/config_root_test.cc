@@ -89,6 +89,7 @@ TEST(ConfigRoot, AValueWithoutANameIsThatOfTheFirstParameter) {
   const Config config = loaded(cross("rocks:flat,height=0.04"));
   EXPECT_EQ(config.world.generator, sim::Generator::kRocks);
   EXPECT_EQ(config.world.style, sim::RockStyle::kFlat);
+  EXPECT_EQ(loaded(cross("rocks:jagged")).world.style, sim::RockStyle::kJagged);
   EXPECT_EQ(config.world.height_m, 0.04);
   EXPECT_EQ(issues_of(cross("rocks:round")).rfind("--world: world.style: ", 0), 0U);
 }
