@@ -49,7 +49,9 @@ struct RangeCheck {
   void boolean(const char*, const bool&, const char*) {}
   template <class Enum, class Names>
   void choice(const char*, const Enum& value, const Names& names, const char*) {
-    good = good && static_cast<std::size_t>(value) < std::size(names);
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto& name : names) ++count;
+    good = good && static_cast<std::size_t>(value) < count;
   }
   template <class Group>
   void group(const char*, const Group& value) {

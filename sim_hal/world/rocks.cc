@@ -15,7 +15,7 @@ constexpr double kMinThickness = 0.12;  // of the board's height
 constexpr double kMaxThickness = 0.35;
 constexpr double kFlatRange_m = 0.06;
 constexpr double kJaggedRange_m = 0.12;
-constexpr int kSlabs = 60;  // twice the board's area
+constexpr int kSlabs = 400;  // drawn; those that would come to lie too high are left out
 
 // A slab of random size, wholly on the board; top_m is its thickness.
 TerrainBox draw_slab(double height_m, Random& random) {
