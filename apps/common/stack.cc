@@ -79,8 +79,8 @@ std::vector<MemoryRow> memory_table() {
       {"runtime", sizeof(runtime::Executive)},
       {"mapping", sizeof(autonomy::MapTask)},
       {"estimation", sizeof(estimation::Estimator) + sizeof(autonomy::PoseHistory)},
-      {"control",
-       sizeof(control::Locomotion) + sizeof(control::StandUp) + sizeof(autonomy::MpcTask)},
+      {"control", sizeof(control::Locomotion) + sizeof(control::StaticWalk) +
+                      sizeof(control::StandUp) + sizeof(autonomy::MpcTask)},
       {"jumping", sizeof(autonomy::JumpPilot)},
       {"actuation", sizeof(actuation::JointBus)},
       {"mission", sizeof(autonomy::Mission)},
