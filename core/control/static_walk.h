@@ -13,7 +13,7 @@
 // standing foot slips, the one in the air comes down where it is.
 // Without a foothold the robot stands and blocked_s() counts.
 //
-// Frames: O, metres, N. Memory: sizeof(StaticWalk) 22 kB, most of it WholeBody. Cost per tick: one
+// Frames: O, metres, N. Memory: sizeof(StaticWalk) 27 kB, most of it WholeBody. Cost per tick: one
 // whole-body solve, at most one foothold search. No allocation.
 #pragma once
 
