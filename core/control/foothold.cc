@@ -15,6 +15,13 @@ bool classed(const mapping::MapWindow& window, const Vector3& place_O_m) {
 
 }  // namespace
 
+Vector3 stance_hip_B_m(const robot::RobotModel& model, const FootholdConfig& config,
+                       std::size_t leg) {
+  Vector3 hip_B = robot::hip_joint_B_m(model, leg);
+  hip_B[1] += robot::left_sign(leg) * config.lateral_offset_m;
+  return hip_B;
+}
+
 void FootholdPlanner::reset(const FootholdConfig& config, const robot::RobotModel& model) {
   config_ = config;
   model_ = model;
@@ -34,8 +41,7 @@ Vector3 FootholdPlanner::nominal_O_m(std::size_t leg, const estimation::RobotSta
   symmetry[0] = math::clamp(symmetry[0], -limit, limit);
   symmetry[1] = math::clamp(symmetry[1], -limit, limit);
 
-  Vector3 hip_B = robot::hip_joint_B_m(model_, leg);
-  hip_B[1] += robot::left_sign(leg) * config_.lateral_offset_m;
+  const Vector3 hip_B = stance_hip_B_m(model_, config_, leg);
   const Vector2 shoulder(yaw.cos * hip_B[0] - yaw.sin * hip_B[1],
                          yaw.sin * hip_B[0] + yaw.cos * hip_B[1]);
   const Vector2 point = state.p_OB_m.head<2>() + velocity * until_touchdown_s + shoulder + symmetry;
@@ -43,7 +49,7 @@ Vector3 FootholdPlanner::nominal_O_m(std::size_t leg, const estimation::RobotSta
 }
 
 Foothold FootholdPlanner::choose(const Vector3& nominal_O_m, const mapping::MapWindow* window,
-                                 GroundRule ground) const {
+                                 GroundRule ground, double map_offset_m) const {
   Foothold foothold;
   foothold.nominal_O_m = nominal_O_m;
   foothold.position_O_m = nominal_O_m;
@@ -70,6 +76,7 @@ Foothold FootholdPlanner::choose(const Vector3& nominal_O_m, const mapping::MapW
   }
   const mapping::Foothold& place = found.value();
   foothold.position_O_m = {place.x_O_m, place.y_O_m, place.z_O_m + model_.foot_radius_m};
+  foothold.position_O_m[2] += map_offset_m;
   foothold.reason = place.moved ? FootholdReason::kMoved : FootholdReason::kNominal;
   return foothold;
 }

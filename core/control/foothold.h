@@ -29,6 +29,10 @@ struct Foothold {
   FootholdReason reason = FootholdReason::kNominal;
 };
 
+// Hip joint and, outwards of it, where a leg stands: lateral_offset_m.
+Vector3 stance_hip_B_m(const robot::RobotModel& model, const FootholdConfig& config,
+                       std::size_t leg);
+
 class FootholdPlanner {
  public:
   void reset(const FootholdConfig& config, const robot::RobotModel& model);
@@ -42,9 +46,10 @@ class FootholdPlanner {
   // reason kNone: nothing within the search radius; position is the nominal point, not to be used.
   // kUnseen: the nominal point, for unseen ground is allowed and the map knows too little around it
   // to class it. kForced: as kNone, but a step is due at any rate.
+  // map_offset_m is added to heights that the map gives (map_offset.h).
   // Cost: a look-up, or a spiral over the search radius.
-  Foothold choose(const Vector3& nominal_O_m, const mapping::MapWindow* window,
-                  GroundRule ground) const;
+  Foothold choose(const Vector3& nominal_O_m, const mapping::MapWindow* window, GroundRule ground,
+                  double map_offset_m = 0) const;
 
  private:
   FootholdConfig config_;

@@ -43,8 +43,7 @@ Vector3 first_contact_O_m(const HorizonInputs& in, std::size_t leg) {
 // Of a step that is not decided yet, taken at the body's reference `at`.
 Vector3 next_contact_O_m(const HorizonInputs& in, std::size_t leg, const MpcState& at) {
   const math::SinCos yaw = math::sin_cos(at.roll_pitch_yaw_rad[2]);
-  Vector3 hip_B = robot::hip_joint_B_m(in.model, leg);
-  hip_B[1] += robot::left_sign(leg) * in.config.foothold.lateral_offset_m;
+  const Vector3 hip_B = stance_hip_B_m(in.model, in.config.foothold, leg);
   const Vector3 symmetry_O_m = at.v_OB_m_s * (0.5 * in.gait.config().stance_s());
   return {at.p_OB_m[0] + yaw.cos * hip_B[0] - yaw.sin * hip_B[1] + symmetry_O_m[0],
           at.p_OB_m[1] + yaw.sin * hip_B[0] + yaw.cos * hip_B[1] + symmetry_O_m[1],

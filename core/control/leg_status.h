@@ -1,10 +1,13 @@
 // What one leg is about.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/control/foothold.h"
 #include "core/control/swing.h"
+#include "core/control/whole_body.h"
+#include "core/estimation/contact.h"
 #include "core/math/linear.h"
 
 namespace surefoot::control {
@@ -28,5 +31,14 @@ struct LegStatus {
   bool skipped_swing = false;            // no foothold: stays in stance during this planned swing
   bool landed_early = false;             // touched down before the planned end of this swing
 };
+
+using LegStatuses = std::array<LegStatus, robot::kLegs>;
+
+// Where a leg in the air should have its foot: on its path, or straight down from its anchor.
+SwingPoint foot_target(const LegStatus& leg, const SwingConfig& config);
+// The same for whole-body control; legs in stance with the forces they are to give.
+LegTasks leg_tasks(const LegStatuses& legs, const SwingConfig& config);
+// What the contact estimator needs to know of the plan.
+std::array<estimation::GaitPhase, robot::kLegs> gait_phases(const LegStatuses& legs);
 
 }  // namespace surefoot::control

@@ -52,16 +52,6 @@ void Locomotion::start(const estimation::RobotState& state) {
   }
 }
 
-std::array<estimation::GaitPhase, robot::kLegs> Locomotion::gait_phases() const {
-  std::array<estimation::GaitPhase, robot::kLegs> phases;
-  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    phases[leg].stance_planned = legs_[leg].mode != LegMode::kSwing;
-    phases[leg].swing_progress = legs_[leg].swing_progress;
-    phases[leg].height_above_landing_m = legs_[leg].height_above_landing_m;
-  }
-  return phases;
-}
-
 bool Locomotion::all_in_stance() const {
   for (const LegStatus& leg : legs_) {
     if (leg.mode != LegMode::kStance) return false;
@@ -210,11 +200,7 @@ Foothold Locomotion::find_foothold(std::size_t leg, const estimation::RobotState
   const Vector3 nominal =
       footholds_.nominal_O_m(leg, state, command_, gait_.legs()[leg].remaining_s,
                              gait_.config().stance_s(), reference_.ground_z_m);
-  Foothold foothold = footholds_.choose(nominal, window, ground_);
-  const bool from_map =
-      foothold.reason == FootholdReason::kNominal || foothold.reason == FootholdReason::kMoved;
-  if (from_map) foothold.position_O_m[2] += map_offset_.offset_m();
-  return foothold;
+  return footholds_.choose(nominal, window, ground_, map_offset_.offset_m());
 }
 
 void Locomotion::set_path(std::size_t leg, const mapping::MapWindow* window) {
@@ -247,18 +233,6 @@ void Locomotion::plan_forces(const estimation::RobotState& state, const ForcePla
   }
 }
 
-// Of a foot in the air.
-SwingPoint Locomotion::foot_target(std::size_t leg) const {
-  const LegStatus& status = legs_[leg];
-  if (status.mode == LegMode::kSwing) {
-    return evaluate(status.path, status.swing_progress, status.swing_s);
-  }
-  SwingPoint point;
-  point.position_O_m = status.anchor_O_m - Vector3(0.0, 0.0, status.searched_m);
-  point.velocity_O_m_s = Vector3(0.0, 0.0, -config_.swing.search_speed_m_s);
-  return point;
-}
-
 void Locomotion::control_body(const estimation::RobotState& state) {
   BodyTask body;
   body.p_OB_m = reference_.p_OB_m;
@@ -266,17 +240,7 @@ void Locomotion::control_body(const estimation::RobotState& state) {
   body.R_OB =
       geometry::from_roll_pitch_yaw(reference_.roll_rad, reference_.pitch_rad, reference_.yaw_rad);
   body.angular_velocity_O_rad_s = Vector3(0.0, 0.0, reference_.yaw_rate_rad_s);
-  LegTasks tasks;
-  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    LegTask& task = tasks[leg];
-    task.in_contact = legs_[leg].mode == LegMode::kStance;
-    task.force_O_N = legs_[leg].force_O_N;
-    if (task.in_contact) continue;
-    const SwingPoint target = foot_target(leg);
-    task.position_O_m = target.position_O_m;
-    task.velocity_O_m_s = target.velocity_O_m_s;
-    task.acceleration_O_m_s2 = target.acceleration_O_m_s2;
-  }
+  const LegTasks tasks = leg_tasks(legs_, config_.swing);
   const WholeBodyCommand& wanted = whole_body_.update(whole_body_state(state), body, tasks);
   joints_ = joint_commands(wanted, tasks, config_);
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {

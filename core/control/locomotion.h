@@ -55,9 +55,11 @@ class Locomotion {
   // What the predictive controller should solve next, from the last update on.
   void plan(const estimation::RobotState& state, MpcProblem& problem) const;
 
-  const std::array<LegStatus, robot::kLegs>& legs() const { return legs_; }
+  const LegStatuses& legs() const { return legs_; }
   // What the contact estimator needs to know of the plan.
-  std::array<estimation::GaitPhase, robot::kLegs> gait_phases() const;
+  std::array<estimation::GaitPhase, robot::kLegs> gait_phases() const {
+    return control::gait_phases(legs_);
+  }
   bool all_in_stance() const;
   // All in stance, and no further step is due.
   bool at_rest() const { return !gait_running_ && all_in_stance(); }
@@ -79,7 +81,6 @@ class Locomotion {
                          const mapping::MapWindow* window) const;
   void set_path(std::size_t leg, const mapping::MapWindow* window);
   void plan_forces(const estimation::RobotState& state, const ForcePlan& plan);
-  SwingPoint foot_target(std::size_t leg) const;
   void control_body(const estimation::RobotState& state);
 
   ControlConfig config_;
@@ -95,7 +96,7 @@ class Locomotion {
   bool gait_running_ = false;
   double halted_s_ = 0;  // since the commanded speed has come down to zero in order to stand
   double blocked_s_ = 0;
-  std::array<LegStatus, robot::kLegs> legs_;
+  LegStatuses legs_;
   actuation::JointCommands joints_;
 };
 

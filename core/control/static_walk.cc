@@ -19,10 +19,9 @@ constexpr std::array<std::size_t, robot::kLegs> kOrder{robot::kHindRight, robot:
 // The feet stand -1/2, -1/4, 0, 1/4 of a stride off their hips when a leg's turn comes: their mean
 // lags by 1/8, and the foot goes to 1/2 of a stride ahead.
 constexpr double kLandingStrides = 0.625;
-constexpr double kFeelsGround = 0.5;  // of a swing: contact before is a stub, not a touchdown
+constexpr double kFeelsGround = 0.5;     // of a swing: before, the toe has caught on something
+constexpr double kShortestShift = 0.25;  // of shift_s: the load still goes from foot to foot
 constexpr double kMaxHeadingLag_rad = 0.15;
-
-double larger(double a, double b) { return a > b ? a : b; }
 
 Vector2 heading(double yaw_rad, double forward, double left) {
   const math::SinCos yaw = math::sin_cos(yaw_rad);
@@ -37,24 +36,23 @@ void StaticWalk::reset(const ControlConfig& config, const robot::RobotModel& mod
   footholds_.reset(config.foothold, model);
   map_offset_.reset(config.foothold.max_map_offset_m, model.foot_radius_m);
   whole_body_.reset(config.whole_body, model);
-  stage_ = Stage::kStand;
-  turn_ = 0;
-  velocity_ = VelocityCommand{};
-  blocked_s_ = 0;
-  legs_.fill(LegStatus{});
-  load_.fill(1.0);
+  stand();
   feet_O_m_.fill(Vector3::Zero());
   counters_ = StaticWalkCounters{};
   joints_ = actuation::JointCommands{};
 }
 
-void StaticWalk::start(const estimation::RobotState& state) {
+void StaticWalk::stand() {
   stage_ = Stage::kStand;
   turn_ = 0;
   velocity_ = VelocityCommand{};
   blocked_s_ = 0;
   legs_.fill(LegStatus{});
   load_.fill(1.0);
+}
+
+void StaticWalk::start(const estimation::RobotState& state) {
+  stand();
   map_offset_.clear();
   Vector2 centre = Vector2::Zero();
   double feet_m = 0;
@@ -76,16 +74,6 @@ void StaticWalk::start(const estimation::RobotState& state) {
 
 std::size_t StaticWalk::leg() const { return kOrder[turn_]; }
 std::size_t StaticWalk::next_leg() const { return kOrder[(turn_ + 1) % robot::kLegs]; }
-
-std::array<estimation::GaitPhase, robot::kLegs> StaticWalk::gait_phases() const {
-  std::array<estimation::GaitPhase, robot::kLegs> phases;
-  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    phases[leg].stance_planned = legs_[leg].mode != LegMode::kSwing;
-    phases[leg].swing_progress = legs_[leg].swing_progress;
-    phases[leg].height_above_landing_m = legs_[leg].height_above_landing_m;
-  }
-  return phases;
-}
 
 const actuation::JointCommands& StaticWalk::update(const estimation::RobotState& state,
                                                    const mapping::MapWindow* window,
@@ -148,9 +136,8 @@ Vector3 StaticWalk::nominal_O_m() const {
 
 // From the middle of the hips, axes of O.
 Vector2 StaticWalk::hip_O_m(std::size_t leg) const {
-  const Vector3 hip_B = robot::hip_joint_B_m(model_, leg);
-  return heading(yaw_rad_, hip_B[0],
-                 hip_B[1] + robot::left_sign(leg) * config_.foothold.lateral_offset_m);
+  const Vector3 hip_B = stance_hip_B_m(model_, config_.foothold, leg);
+  return heading(yaw_rad_, hip_B[0], hip_B[1]);
 }
 
 // false: there is no foothold.
@@ -158,11 +145,8 @@ bool StaticWalk::begin_step(const estimation::RobotState& state, const mapping::
                             GroundRule ground) {
   for (std::size_t i = 0; i < robot::kLegs; ++i) feet_O_m_[i] = state.feet[i].p_O_m;
   LegStatus& status = legs_[leg()];
-  status.foothold = footholds_.choose(nominal_O_m(), window, ground);
+  status.foothold = footholds_.choose(nominal_O_m(), window, ground, map_offset_.offset_m());
   if (status.foothold.reason == FootholdReason::kNone) return false;
-  const bool from_map = status.foothold.reason == FootholdReason::kNominal ||
-                        status.foothold.reason == FootholdReason::kMoved;
-  if (from_map) status.foothold.position_O_m[2] += map_offset_.offset_m();
   blocked_s_ = 0;
   begin_shift(state);
   return true;
@@ -173,7 +157,7 @@ void StaticWalk::begin_shift(const estimation::RobotState& state) {
   plan_pose(state);
   const StaticWalkConfig& config = config_.static_walk;
   const double way_m = (to_.centre_O_m - from_.centre_O_m).norm();
-  duration_s_ = larger(config.shift_s * 0.25, way_m / config.shift_speed_m_s);
+  duration_s_ = std::max(kShortestShift * config.shift_s, way_m / config.shift_speed_m_s);
   progress_ = 0;
   stage_ = Stage::kShift;
 }
@@ -259,7 +243,7 @@ void StaticWalk::lift(const estimation::RobotState& state, const mapping::MapWin
   const double way_m = (status.path.landing_O_m - status.path.lift_off_O_m).head<2>().norm() +
                        2.0 * status.path.apex_O_m - status.path.lift_off_O_m[2] -
                        status.path.landing_O_m[2];
-  status.swing_s = larger(config.swing_s, way_m / config.foot_speed_m_s);
+  status.swing_s = std::max(config.swing_s, way_m / config.foot_speed_m_s);
   load_[leg()] = 0;
   stage_ = Stage::kSwing;
 }
@@ -350,17 +334,6 @@ Vector2 StaticWalk::centre_offset_O_m(const estimation::RobotState& state) const
   return (state.R_OB * whole_body_.dynamics().centroid().p_B_m).head<2>();
 }
 
-SwingPoint StaticWalk::foot_target() const {
-  const LegStatus& status = legs_[leg()];
-  if (status.mode == LegMode::kSwing) {
-    return evaluate(status.path, status.swing_progress, status.swing_s);
-  }
-  SwingPoint point;
-  point.position_O_m = status.anchor_O_m - Vector3(0.0, 0.0, status.searched_m);
-  point.velocity_O_m_s = Vector3(0.0, 0.0, -config_.swing.search_speed_m_s);
-  return point;
-}
-
 void StaticWalk::command(const estimation::RobotState& state) {
   const Motion motion = pose_now();
   const Vector3& rpy = motion.pose.roll_pitch_yaw_rad;
@@ -373,17 +346,7 @@ void StaticWalk::command(const estimation::RobotState& state) {
   body.R_OB = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]);
   body.angular_velocity_O_rad_s = Vector3(0.0, 0.0, motion.yaw_rate_rad_s);
   share_load(state, state.p_OB_m.head<2>() + offset, push_N(state, body));
-  LegTasks tasks;
-  for (std::size_t i = 0; i < robot::kLegs; ++i) {
-    LegTask& task = tasks[i];
-    task.in_contact = legs_[i].mode == LegMode::kStance;
-    task.force_O_N = legs_[i].force_O_N;
-    if (task.in_contact) continue;
-    const SwingPoint target = foot_target();
-    task.position_O_m = target.position_O_m;
-    task.velocity_O_m_s = target.velocity_O_m_s;
-    task.acceleration_O_m_s2 = target.acceleration_O_m_s2;
-  }
+  const LegTasks tasks = leg_tasks(legs_, config_.swing);
   const WholeBodyCommand& wanted = whole_body_.update(whole_body_state(state), body, tasks);
   joints_ = joint_commands(wanted, tasks, config_);
   hold_feet(body);
@@ -431,8 +394,8 @@ void StaticWalk::share_load(const estimation::RobotState& state, const Vector2& 
     Vector3& force = legs_[i].force_O_N;
     force.setZero();
     if (legs_[i].mode != LegMode::kStance) continue;
-    force[2] = larger(0.0, load_[i] * lever[i].dot(multiplier));
-    force.head<2>() = force_O_N.head<2>() * (force[2] / larger(force_O_N[2], 1e-3));
+    force[2] = std::max(0.0, load_[i] * lever[i].dot(multiplier));
+    force.head<2>() = force_O_N.head<2>() * (force[2] / std::max(force_O_N[2], 1e-3));
   }
 }
 

@@ -63,9 +63,11 @@ class StaticWalk {
                                          const VelocityCommand& velocity, bool walking,
                                          GroundRule ground, double step_s);
 
-  const std::array<LegStatus, robot::kLegs>& legs() const { return legs_; }
+  const LegStatuses& legs() const { return legs_; }
   // What the contact estimator needs to know of the plan.
-  std::array<estimation::GaitPhase, robot::kLegs> gait_phases() const;
+  std::array<estimation::GaitPhase, robot::kLegs> gait_phases() const {
+    return control::gait_phases(legs_);
+  }
   bool at_rest() const { return stage_ == Stage::kStand; }
   // How long there has been no foothold for the leg whose turn it is.
   double blocked_s() const { return blocked_s_; }
@@ -90,6 +92,7 @@ class StaticWalk {
 
   std::size_t leg() const;  // whose turn it is
   std::size_t next_leg() const;
+  void stand();
   bool begin_step(const estimation::RobotState& state, const mapping::MapWindow* window,
                   GroundRule ground);
   void begin_shift(const estimation::RobotState& state);
@@ -108,7 +111,6 @@ class StaticWalk {
   void begin_search(const Vector3& from_O_m);
   void go_back(const estimation::RobotState& state);
   void put_down(const estimation::RobotState& state);
-  SwingPoint foot_target() const;
   void command(const estimation::RobotState& state);
   void hold_feet(const BodyTask& body);
   Vector3 push_N(const estimation::RobotState& state, const BodyTask& body) const;
@@ -131,7 +133,7 @@ class StaticWalk {
   VelocityCommand velocity_;                    // its mean over about a cycle
   double yaw_rad_ = 0;                          // the heading to keep
   double blocked_s_ = 0;
-  std::array<LegStatus, robot::kLegs> legs_;
+  LegStatuses legs_;
   StaticWalkCounters counters_;
   actuation::JointCommands joints_;
 };

@@ -4,36 +4,12 @@
 #include <string>
 
 #include "sim_hal/simulator_error.h"
+#include "sim_hal/world/boxes.h"
 #include "sim_hal/world/terrain.h"
 
 namespace surefoot::sim {
 
-double half_extent(const TerrainBox& box, double c, double s) {
-  const double along = std::fabs(box.cos_yaw * c + box.sin_yaw * s);
-  const double across = std::fabs(box.cos_yaw * s - box.sin_yaw * c);
-  return along * box.half_length_m + across * box.half_width_m;
-}
-
 namespace {
-
-bool separated_along(const TerrainBox& a, const TerrainBox& b, double c, double s) {
-  const double distance = std::fabs((b.x_m - a.x_m) * c + (b.y_m - a.y_m) * s);
-  return distance >= half_extent(a, c, s) + half_extent(b, c, s);
-}
-
-}  // namespace
-
-// Separating axes of two rectangles.
-bool overlap(const TerrainBox& a, const TerrainBox& b) {
-  return !separated_along(a, b, a.cos_yaw, a.sin_yaw) &&
-         !separated_along(a, b, -a.sin_yaw, a.cos_yaw) &&
-         !separated_along(a, b, b.cos_yaw, b.sin_yaw) &&
-         !separated_along(a, b, -b.sin_yaw, b.cos_yaw);
-}
-
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Clutter.
 constexpr double kMinSide_m = 0.08;
@@ -79,36 +55,14 @@ class CoverRaster {
   int count_ = 0;
 };
 
-// Half extent of a box along the unit vector (c, s).
-// A box of random size and place, wholly inside the field, standing on the ground.
-TerrainBox draw_box(double height_m, Random& random) {
-  TerrainBox box;
-  box.half_length_m = 0.5 * random.uniform(kMinSide_m, kMaxSide_m);
-  box.half_width_m = 0.5 * random.uniform(kMinSide_m, kMaxSide_m);
-  const double yaw = random.uniform(0.0, kPi);
-  box.cos_yaw = std::cos(yaw);
-  box.sin_yaw = std::sin(yaw);
-  box.top_m = random.uniform(kMinHeightPart * height_m, height_m);
-  const double reach_x = half_extent(box, 1, 0);
-  const double reach_y = half_extent(box, 0, 1);
-  box.x_m = random.uniform(kFieldBegin_m + reach_x, kFieldBegin_m + kFieldLength_m - reach_x);
-  box.y_m = random.uniform(-kLaneWidth_m / 2 + reach_y, kLaneWidth_m / 2 - reach_y);
-  return box;
+BoxDraw clutter_boxes(double height_m) {
+  return {kMinSide_m, kMaxSide_m,     kMinHeightPart * height_m,
+          height_m,   kFieldLength_m, kLaneWidth_m};
 }
 
 bool free_of_all(const TerrainBox& box, const std::vector<TerrainBox>& others) {
   return std::none_of(others.begin(), others.end(),
                       [&](const TerrainBox& other) { return overlap(box, other); });
-}
-
-// Lifts the box onto the highest box under it.
-void set_on_top(const std::vector<TerrainBox>& others, TerrainBox& box) {
-  double support = 0;
-  for (const TerrainBox& other : others) {
-    if (other.top_m > support && overlap(box, other)) support = other.top_m;
-  }
-  box.bottom_m += support;
-  box.top_m += support;
 }
 
 }  // namespace
@@ -123,14 +77,16 @@ void make_clutter(double height_m, double cover, Random& random, Terrain& terrai
   if (!(height_m > 0)) throw SimulatorError("world: clutter needs height_m above 0");
   CoverRaster raster;
   for (int attempt = 0; attempt < kFreeAttempts && raster.cover() < cover; ++attempt) {
-    const TerrainBox box = draw_box(height_m, random);
+    const TerrainBox box = draw_box(clutter_boxes(height_m), random);
     if (!free_of_all(box, terrain.boxes)) continue;
     terrain.boxes.push_back(box);
     raster.add(box);
   }
   for (int attempt = 0; attempt < kStackAttempts && raster.cover() < cover; ++attempt) {
-    TerrainBox box = draw_box(height_m, random);
-    set_on_top(terrain.boxes, box);
+    TerrainBox box = draw_box(clutter_boxes(height_m), random);
+    const double support = support_m(terrain.boxes, box);
+    box.bottom_m += support;
+    box.top_m += support;
     if (box.top_m > height_m) continue;
     terrain.boxes.push_back(box);
     raster.add(box);

@@ -1,14 +1,13 @@
 // Boards of rocks. contract.md "The worlds".
 #include <algorithm>
-#include <cmath>
 
+#include "sim_hal/world/boxes.h"
 #include "sim_hal/world/rock_field.h"
 #include "sim_hal/world/terrain.h"
 
 namespace surefoot::sim {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kMinSide_m = 0.10;
 constexpr double kMaxSide_m = 0.30;
 constexpr double kMinThickness = 0.12;  // of the board's height
@@ -17,33 +16,16 @@ constexpr double kFlatRange_m = 0.06;
 constexpr double kJaggedRange_m = 0.12;
 constexpr int kSlabs = 400;  // drawn; those that would come to lie too high are left out
 
-// A slab of random size, wholly on the board; top_m is its thickness.
-TerrainBox draw_slab(double height_m, Random& random) {
-  TerrainBox slab;
-  slab.half_length_m = 0.5 * random.uniform(kMinSide_m, kMaxSide_m);
-  slab.half_width_m = 0.5 * random.uniform(kMinSide_m, kMaxSide_m);
-  const double yaw = random.uniform(0.0, kPi);
-  slab.cos_yaw = std::cos(yaw);
-  slab.sin_yaw = std::sin(yaw);
-  slab.top_m = height_m * random.uniform(kMinThickness, kMaxThickness);
-  const double reach_x = half_extent(slab, 1, 0);
-  const double reach_y = half_extent(slab, 0, 1);
-  slab.x_m = random.uniform(kFieldBegin_m + reach_x, kFieldBegin_m + kBoardLength_m - reach_x);
-  slab.y_m = random.uniform(-kBoardWidth_m / 2 + reach_y, kBoardWidth_m / 2 - reach_y);
-  return slab;
-}
-
 // Each slab lies level on the highest one under it, filled down to the ground. Those that would
 // come to lie too high are left out; the heights are then scaled to the range that is asked for.
 void make_slabs(double height_m, Random& random, Terrain& terrain) {
+  const BoxDraw draw{
+      kMinSide_m,     kMaxSide_m,   kMinThickness * height_m, kMaxThickness * height_m,
+      kBoardLength_m, kBoardWidth_m};
   double highest_m = 0;
   for (int i = 0; i < kSlabs; ++i) {
-    TerrainBox slab = draw_slab(height_m, random);
-    double support_m = 0;
-    for (const TerrainBox& other : terrain.boxes) {
-      if (other.top_m > support_m && overlap(slab, other)) support_m = other.top_m;
-    }
-    slab.top_m += support_m;
+    TerrainBox slab = draw_box(draw, random);
+    slab.top_m += support_m(terrain.boxes, slab);
     if (slab.top_m > height_m) continue;
     highest_m = std::max(highest_m, slab.top_m);
     terrain.boxes.push_back(slab);

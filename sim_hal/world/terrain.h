@@ -65,11 +65,6 @@ struct Terrain {
   double height_m(double x, double y) const;
 };
 
-// Whether the rectangles of two boxes have a point in common, seen from above.
-bool overlap(const TerrainBox& a, const TerrainBox& b);
-// From the box's centre to its outline along the unit vector (c, s).
-double half_extent(const TerrainBox& box, double c, double s);
-
 // Throws SimulatorError for an unreadable file or a clutter field that cannot be filled.
 Terrain make_terrain(const WorldSpec& spec, std::uint64_t seed);
 
