@@ -140,10 +140,15 @@ Vector2 StaticWalk::hip_O_m(std::size_t leg) const {
   return heading(yaw_rad_, hip_B[0], hip_B[1]);
 }
 
+// Where the feet are is where they stand from now on.
+void StaticWalk::take_feet(const estimation::RobotState& state) {
+  for (std::size_t i = 0; i < robot::kLegs; ++i) feet_O_m_[i] = state.feet[i].p_O_m;
+}
+
 // false: there is no foothold.
 bool StaticWalk::begin_step(const estimation::RobotState& state, const mapping::MapWindow* window,
                             GroundRule ground) {
-  for (std::size_t i = 0; i < robot::kLegs; ++i) feet_O_m_[i] = state.feet[i].p_O_m;
+  take_feet(state);
   LegStatus& status = legs_[leg()];
   status.foothold = footholds_.choose(nominal_O_m(), window, ground, map_offset_.offset_m());
   if (status.foothold.reason == FootholdReason::kNone) return false;
@@ -256,6 +261,7 @@ void StaticWalk::swing(const estimation::RobotState& state, double step_s) {
     if (foot.in_contact && status.swing_progress >= kFeelsGround) return put_down(state);
     if (has_slipped(state)) {
       ++counters_.slipped;
+      take_feet(state);  // they are held where they are now: one slip is answered once
       begin_search(foot.p_O_m);
     } else if (status.swing_progress >= 1.0) {
       begin_search(status.path.landing_O_m);

@@ -93,6 +93,7 @@ class StaticWalk {
   std::size_t leg() const;  // whose turn it is
   std::size_t next_leg() const;
   void stand();
+  void take_feet(const estimation::RobotState& state);
   bool begin_step(const estimation::RobotState& state, const mapping::MapWindow* window,
                   GroundRule ground);
   void begin_shift(const estimation::RobotState& state);

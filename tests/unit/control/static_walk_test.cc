@@ -123,6 +123,23 @@ TEST(StaticWalk, PutsTheFootDownWhenAnotherOneSlips) {
   EXPECT_GE(world.walk->counters().steps, 6U);
 }
 
+// The worst of both: another foot slips, and there is no ground under the one in the air.
+TEST(StaticWalk, AfterASlipAFootThatFindsNoGroundStillGoesBack) {
+  StaticWalkWorld world;
+  for (int i = 0; i < 1000 && world.in_the_air() == 0; ++i) world.tick(forward(0.06), true);
+  const Vector3 home = world.state.feet[robot::kHindRight].p_O_m;
+  for (int i = 0; i < 80; ++i) world.tick(forward(0.06), true);
+  world.state.feet[robot::kFrontLeft].p_O_m += Vector3(0.02, 0.0, -0.01);
+  world.ground_m[robot::kHindRight] = -1.0;
+  for (int i = 0; i < 1000 && world.walk->counters().missed == 0; ++i) world.tick({}, false);
+  ASSERT_EQ(world.walk->counters().missed, 1U);
+  world.ground_m[robot::kHindRight] = 0.0;
+  for (int i = 0; i < 1000 && world.in_the_air() > 0; ++i) world.tick({}, false);
+  EXPECT_EQ(world.walk->counters().slipped, 1U);
+  EXPECT_EQ(world.walk->counters().missed, 1U);
+  EXPECT_LT((world.state.feet[robot::kHindRight].p_O_m - home).head<2>().norm(), 0.02);
+}
+
 TEST(StaticWalk, StandsAndCountsWhereNoFootholdIs) {
   StaticWalkWorld world;
   auto window = std::make_unique<mapping::MapWindow>();
