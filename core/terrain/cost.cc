@@ -110,7 +110,7 @@ Status CostMap::add(const HeightView& view) {
   count_ += 1;
   for (std::int32_t row = 0; row < view.rows; ++row) {
     for (std::int32_t column = 0; column < view.columns; ++column) {
-      bend_m_[static_cast<std::size_t>(row * view.columns + column)] = bend(column, row);
+      bend_m_[table_index(column, row, view.columns)] = bend(column, row);
     }
   }
   return Status::kOk;
@@ -122,7 +122,7 @@ bool CostMap::advance(std::int32_t rows) {
     for (std::int32_t column = 0; column < view_.columns; ++column) {
       if (!known(column, row_)) continue;
       const auto cost = static_cast<float>(cost_of(features(column, row_)));
-      const auto i = static_cast<std::size_t>(row_ * view_.columns + column);
+      const auto i = table_index(column, row_, view_.columns);
       sum_[i] += cost;
       squares_[i] += cost * cost;
     }
@@ -172,7 +172,7 @@ CellFeatures CostMap::features(std::int32_t column, std::int32_t row) const {
         const std::int32_t c = column + dx;
         if (c < 0 || c >= view_.columns || !known(c, r)) continue;
         moments.add(dx, dy, static_cast<double>(height(c, r)) - middle);
-        const float bend_m = bend_m_[static_cast<std::size_t>(r * view_.columns + c)];
+        const float bend_m = bend_m_[table_index(c, r, view_.columns)];
         if (bend_m < 0) continue;
         moments.bends += 1;
         moments.bend_sum += static_cast<double>(bend_m);

@@ -45,7 +45,7 @@ Status TerrainFiller::configure(const FillConfig& config) {
   for (std::int32_t v = 0; v < side; ++v) {
     for (std::int32_t u = 0; u < side; ++u) {
       const double square = math::square(u - side / 2) + math::square(v - side / 2);
-      gauss_[static_cast<std::size_t>(v * side + u)] =
+      gauss_[table_index(u, v, side)] =
           static_cast<float>(math::exp(-square / (2 * deviation * deviation)));
     }
   }
@@ -125,8 +125,10 @@ void TerrainFiller::sort_cells(double view_rad) {
   const bool far_first = config_.order == FillOrder::kFarFirst;
   const math::SinCos turn = math::sin_cos(far_first ? view_rad : 0.0);
   const auto key_of = [&](std::uint16_t cell) {
-    const double along = turn.cos * (cell % grid_.columns) + turn.sin * (cell / grid_.columns);
-    const auto key = static_cast<std::size_t>(along + kKeyOffset + 0.5);
+    const std::int32_t column = cell % grid_.columns;
+    const std::int32_t row = cell / grid_.columns;
+    const double shifted = turn.cos * column + turn.sin * row + kKeyOffset + 0.5;
+    const auto key = static_cast<std::size_t>(shifted);  // rounds: it is positive
     return far_first ? kKeys - 1 - key : key;
   };
   std::array<std::uint16_t, kKeys + 1> begin{};
@@ -207,12 +209,12 @@ void TerrainFiller::gather(std::size_t i, std::int32_t draw) {
   const std::int32_t side = config_.patch_cells;
   const std::size_t middle = padded(i);
   for (std::int32_t v = 0; v < side; ++v) {
-    const std::size_t begin = middle + static_cast<std::size_t>((v - side / 2) * kPitch) -
-                              static_cast<std::size_t>(side / 2);
+    const std::size_t begin =
+        middle + table_index(0, v - side / 2, kPitch) - static_cast<std::size_t>(side / 2);
     for (std::int32_t u = 0; u < side; ++u) {
       const std::size_t at = begin + static_cast<std::size_t>(u);
       const float known = known_[at];
-      target_.set(u, v, heights[at], known, known * gauss_[static_cast<std::size_t>(v * side + u)],
+      target_.set(u, v, heights[at], known, known * gauss_[table_index(u, v, side)],
                   ceiling_m_[at]);
     }
   }

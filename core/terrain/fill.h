@@ -91,7 +91,7 @@ class TerrainFiller {
   static constexpr std::size_t kPadded = static_cast<std::size_t>(kPitch) * kPitch;
 
   std::size_t padded(std::int32_t column, std::int32_t row) const {
-    return static_cast<std::size_t>((row + kRim) * kPitch + column + kRim);
+    return table_index(column + kRim, row + kRim, kPitch);
   }
   std::size_t padded(std::size_t i) const;
   void spread_out(const TerrainGrid& grid);

@@ -1,14 +1,16 @@
 #include "core/terrain/height_prior.h"
 
 #include "core/math/elementary.h"
+#include "core/terrain/table_index.h"
 
 namespace surefoot::terrain {
 
 namespace {
 
+// Half away from zero.
 std::int16_t rounded(double x) {
-  return static_cast<std::int16_t>(x < 0 ? -static_cast<std::int32_t>(0.5 - x)
-                                         : static_cast<std::int32_t>(0.5 + x));
+  const double farther = x < 0 ? x - 0.5 : x + 0.5;
+  return static_cast<std::int16_t>(farther);
 }
 
 bool is_on_lattice(std::int32_t u, std::int32_t v, std::int32_t radius, std::int32_t stride) {
@@ -20,7 +22,8 @@ bool is_on_lattice(std::int32_t u, std::int32_t v, std::int32_t radius, std::int
 }  // namespace
 
 std::size_t prior_points(std::int32_t radius, std::int32_t stride) {
-  auto points = static_cast<std::size_t>((2 * radius + 1) * (2 * radius + 1));
+  const std::int32_t side = 2 * radius + 1;
+  std::size_t points = table_index(0, side, side);
   if (radius == 0 || stride == 1) return points;
   for (std::int32_t v = -kDenseRadius; v <= kDenseRadius; ++v) {
     for (std::int32_t u = -kDenseRadius; u <= kDenseRadius; ++u) {

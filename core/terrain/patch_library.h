@@ -10,6 +10,7 @@
 #include "core/base/fixed_vector.h"
 #include "core/base/random.h"
 #include "core/base/status.h"
+#include "core/terrain/table_index.h"
 
 namespace surefoot::terrain {
 
@@ -49,7 +50,7 @@ class PatchLibrary {
   std::size_t pieces() const { return pieces_.size(); }
   const Piece& piece(std::size_t i) const { return pieces_[i]; }
   float height_m(const Piece& piece, std::int32_t column, std::int32_t row) const {
-    return heights_m_[piece.begin + static_cast<std::size_t>(row * piece.columns + column)];
+    return heights_m_[piece.begin + table_index(column, row, piece.columns)];
   }
   // How many different patches there are.
   std::uint32_t patches() const { return patches_; }

@@ -38,7 +38,7 @@ PatchFit PatchTarget::fit_rows(const PatchLibrary::Patch& patch) const {
   Lanes sum = all_lanes(0.0f);
   const float* from = patch.corner;
   for (std::int32_t row = 0; row < side_; ++row, from += patch.pitch) {
-    const float* known = &known_[static_cast<std::size_t>(row * kRowFloats)];
+    const float* known = &known_[table_index(0, row, kRowFloats)];
     for (std::int32_t k = 0; k < kRowLanes; ++k) {
       sum += load_lanes(known + k * kLanes) * load_lanes(from + k * kLanes);
     }
@@ -50,7 +50,7 @@ PatchFit PatchTarget::fit_rows(const PatchLibrary::Patch& patch) const {
   Lanes violation = zero;
   from = patch.corner;
   for (std::int32_t row = 0; row < side_; ++row, from += patch.pitch) {
-    const auto begin = static_cast<std::size_t>(row * kRowFloats);
+    const auto begin = table_index(0, row, kRowFloats);
     for (std::int32_t k = 0; k < kRowLanes; ++k) {
       const std::size_t i = begin + static_cast<std::size_t>(k * kLanes);
       const Lanes shifted = load_lanes(from + k * kLanes) + bias;

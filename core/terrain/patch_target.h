@@ -26,7 +26,7 @@ class PatchTarget {
   // not known), ceilings to be respected (kNoCeiling_m: none).
   void set(std::int32_t column, std::int32_t row, float height_m, float known, float weight,
            float ceiling_m) {
-    const auto i = static_cast<std::size_t>(row * kRowFloats + column);
+    const auto i = table_index(column, row, kRowFloats);
     height_m_[i] = height_m;
     known_[i] = known;
     weight_[i] = weight;

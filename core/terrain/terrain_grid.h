@@ -13,6 +13,7 @@
 #include "core/base/status.h"
 #include "core/mapping/height_map.h"
 #include "core/mapping/map_window.h"
+#include "core/terrain/table_index.h"
 
 namespace surefoot::terrain {
 
@@ -41,7 +42,7 @@ struct TerrainGrid {
 
   std::size_t index(std::int32_t column, std::int32_t row) const {
     SUREFOOT_ASSERT(contains(column, row));
-    return static_cast<std::size_t>(row * columns + column);
+    return table_index(column, row, columns);
   }
   bool contains(std::int32_t column, std::int32_t row) const {
     return column >= 0 && column < columns && row >= 0 && row < rows;
