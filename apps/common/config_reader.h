@@ -64,6 +64,13 @@ class ConfigReader {
     const ConfigNode* node = find(key, "a group");
     if (node != nullptr) read_group(*node, path(key), value);
   }
+  template <class Struct>
+  void optional(const char* key, Struct& value) {
+    known_.emplace_back(key);
+    const ConfigNode* node = node_.find(key);
+    value.present = node != nullptr;
+    if (value.present) read_group(*node, path(key), value);
+  }
   template <class Struct, std::size_t N>
   void groups(const char* key, std::array<Struct, N>& values) {
     const ConfigNode* node = find(key, "a list of groups");

@@ -54,6 +54,10 @@ class ConfigWriter {
     Struct::describe(value, *this);
     prefix_.resize(length);
   }
+  template <class Struct>
+  void optional(const char* key, const Struct& value) {
+    if (value.present) group(key, value);
+  }
   template <class Struct, std::size_t N>
   void groups(const char* key, const std::array<Struct, N>& values) {
     for (std::size_t i = 0; i < N; ++i) {

@@ -12,6 +12,7 @@ namespace {
 constexpr std::uint32_t kControlBudget_us = 1000;
 constexpr std::uint32_t kMpcBudget_us = 1000;
 constexpr std::uint32_t kMappingBudget_us = 10000;
+constexpr std::uint32_t kStereoBudget_us = 120000;
 
 Autonomy& of(void* self) { return *static_cast<Autonomy*>(self); }
 
@@ -43,6 +44,20 @@ runtime::Task mpc_task(Autonomy& autonomy) {
   return task;
 }
 
+// Before mapping in the table, which takes what it publishes. A pair is asked for at most every
+// stereo.least_interval_s.
+runtime::Task stereo_task(Autonomy& autonomy) {
+  runtime::Task task;
+  task.name = "stereo";
+  task.latency_ticks = autonomy::kStereoLatencyTicks;
+  task.budget_us = kStereoBudget_us;
+  task.self = &autonomy;
+  task.release = [](void* self, const TickInputs& inputs) { return of(self).begin_stereo(inputs); };
+  task.run = [](void* self) { of(self).run_stereo(); };
+  task.publish = [](void* self, TickOutputs&) { of(self).publish_stereo(); };
+  return task;
+}
+
 // After control in the table: a frame is mapped with the pose history of the tick that brought it.
 runtime::Task mapping_task(Autonomy& autonomy) {
   runtime::Task task;
@@ -64,7 +79,8 @@ Status Stack::start(const Config& config, const hal::Board& board, runtime::Slow
                     runtime::TickObserver* observer) {
   const Status ready = autonomy_.reset(config.robot, config.autonomy);
   if (!ok(ready)) return ready;
-  tasks_ = {control_task(autonomy_), mpc_task(autonomy_), mapping_task(autonomy_)};
+  tasks_ = {control_task(autonomy_), mpc_task(autonomy_), stereo_task(autonomy_),
+            mapping_task(autonomy_)};
   runtime::ExecutiveSetup setup;
   setup.board = board;
   setup.tasks = tasks_;
@@ -78,6 +94,7 @@ std::vector<MemoryRow> memory_table() {
   std::vector<MemoryRow> rows{
       {"runtime", sizeof(runtime::Executive)},
       {"mapping", sizeof(autonomy::MapTask)},
+      {"stereo", sizeof(autonomy::StereoTask)},
       {"estimation", sizeof(estimation::Estimator) + sizeof(autonomy::PoseHistory)},
       {"control", sizeof(control::Locomotion) + sizeof(control::StaticWalk) +
                       sizeof(control::StandUp) + sizeof(autonomy::MpcTask)},

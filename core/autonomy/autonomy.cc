@@ -43,7 +43,11 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   if (!ok(wired)) return wired;
   const mapping::TraversabilityLimits limits = mapping::traversability_limits(
       config.mapping, model, config.control.body.height_m, config.control.swing.clearance_m);
-  const Status mapped = map_.reset(config.mapping, limits, model);
+  const Status matched = stereo_.reset(model.stereo_camera, config.stereo);
+  if (!ok(matched)) return matched;
+  trigger_.reset(config.stereo);
+  const MapCamera camera = stereo_.enabled() ? stereo_.camera() : depth_map_camera(model);
+  const Status mapped = map_.reset(config.mapping, limits, model, camera);
   if (!ok(mapped)) return mapped;
   avoidance_.reset(config.obstacles, footprint(model));
   velocity_ = control::VelocityCommand{};
@@ -94,6 +98,7 @@ void Autonomy::run_control() {
   mission_.update(state, facts, tick_s_);
   act(state);
   send();
+  watch(state);
   report(state);
   inputs_ = nullptr;
 }
@@ -346,6 +351,17 @@ void Autonomy::send() {
   if (!ok(bus_.encode(commands_, outputs_.can))) ++encode_refused_;
 }
 
+// Pictures are taken while the trunk is steady: every one is placed by the pose of one instant.
+void Autonomy::watch(const estimation::RobotState& state) {
+  StereoMoment moment;
+  moment.standing = stereo_.enabled() && walking_ready_ && locomotion_acts();
+  moment.shifted = walks_statically() && static_walk_.shifted();
+  moment.turn_rate_rad_s = math::sqrt(state.angular_velocity_B_rad_s.squaredNorm());
+  moment.speed_m_s = math::sqrt(state.v_OB_m_s.squaredNorm());
+  outputs_.stereo_trigger = trigger_.update(moment, tick_s_);
+  if (outputs_.stereo_trigger) ++outputs_.telemetry.stereo.triggers;
+}
+
 void Autonomy::report(const estimation::RobotState& state) {
   Telemetry& telemetry = outputs_.telemetry;
   telemetry.phase = mission_.phase();
@@ -366,6 +382,7 @@ void Autonomy::report(const estimation::RobotState& state) {
   }
   report_legs(state);
   report_jump();
+  report_stereo();
   telemetry.depth_frames_mapped = map_.counters().frames_integrated;
   telemetry.map_digest = map_.window_digest();
   const estimation::DriftEstimator& drift = estimator_.drift();
@@ -418,6 +435,14 @@ void Autonomy::report_jump() {
   telemetry.gap_m = jump_pilot_.ledge().gap_m;
 }
 
+void Autonomy::report_stereo() {
+  StereoTelemetry& telemetry = outputs_.telemetry.stereo;
+  telemetry.pairs_matched = stereo_.counters().pairs_matched;
+  telemetry.pairs_refused = stereo_.counters().pairs_refused;
+  telemetry.pairs_unusable = stereo_.counters().pairs_unusable;
+  telemetry.valid_share = stereo_.valid_share();
+}
+
 bool Autonomy::begin_mpc(const TickInputs& inputs) {
   if (walks_statically()) return false;
   if (!walking_ready_ || !locomotion_acts() || jump_pilot_.jumps()) return false;
@@ -426,9 +451,20 @@ bool Autonomy::begin_mpc(const TickInputs& inputs) {
   return true;
 }
 
+bool Autonomy::begin_stereo(const TickInputs& inputs) {
+  if (!inputs.stereo_fresh || !walking_ready_) return false;
+  return stereo_.release(*inputs.stereo);
+}
+
 bool Autonomy::begin_mapping(const TickInputs& inputs) {
+  const Vector3& centre_O_m = estimator_.state().p_OB_m;
+  if (stereo_.enabled()) {
+    const StereoPicture* const picture = stereo_.take();
+    if (picture == nullptr || !walking_ready_) return false;
+    return map_.release(picture->depth, &picture->noise, history_, centre_O_m);
+  }
   if (!inputs.depth_fresh || !walking_ready_) return false;
-  return map_.release(*inputs.depth, history_, estimator_.state().p_OB_m);
+  return map_.release(*inputs.depth, nullptr, history_, centre_O_m);
 }
 
 }  // namespace surefoot::autonomy

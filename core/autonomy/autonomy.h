@@ -1,6 +1,6 @@
 // The one aggregate: all state of the robot's mind, statically allocated, driven by the executive
-// through two tasks. `control` runs every tick; `mapping` is slow and published kMapLatencyTicks
-// later.
+// through its tasks. `control` runs every tick; `mapping` and `stereo` are slow and published
+// kMapLatencyTicks and kStereoLatencyTicks later.
 //
 // Memory: sizeof(Autonomy), printed per module by `surefoot info`. Nothing allocates. Not copyable
 // in practice: make it a static object of the program.
@@ -13,6 +13,7 @@
 #include "core/autonomy/mission.h"
 #include "core/autonomy/mpc_task.h"
 #include "core/autonomy/pose_history.h"
+#include "core/autonomy/stereo_task.h"
 #include "core/autonomy/tick.h"
 #include "core/control/locomotion.h"
 #include "core/control/recovery.h"
@@ -26,6 +27,8 @@ namespace surefoot::autonomy {
 inline constexpr TimeNs kTickPeriod = milliseconds(2);
 inline constexpr std::uint32_t kMapLatencyTicks =
     5;  // 10 ms from a frame's arrival to its footholds
+
+inline constexpr std::uint32_t kStereoLatencyTicks = 60;  // 120 ms to match a pair
 
 class Autonomy {
  public:
@@ -42,6 +45,11 @@ class Autonomy {
   void run_mpc() { mpc_.run(); }
   void publish_mpc() { mpc_.publish(); }
 
+  // The stereo task: what it publishes the mapping task takes in the same tick.
+  bool begin_stereo(const TickInputs& inputs);
+  void run_stereo() { stereo_.run(); }
+  void publish_stereo() { stereo_.publish(); }
+
   // The mapping task.
   bool begin_mapping(const TickInputs& inputs);
   void run_mapping() { map_.run(); }
@@ -51,6 +59,7 @@ class Autonomy {
   const Mission& mission() const { return mission_; }
   const estimation::Estimator& estimator() const { return estimator_; }
   const MapTask& map() const { return map_; }
+  const StereoTask& stereo() const { return stereo_; }
   const control::StaticWalk& static_walk() const { return static_walk_; }
   const actuation::JointBus& joint_bus() const { return bus_; }
 
@@ -77,10 +86,12 @@ class Autonomy {
   void note_footing(const estimation::RobotState& state);
   const mapping::MapWindow* window() const;
   void send();
+  void watch(const estimation::RobotState& state);
   void report(const estimation::RobotState& state);
   void report_obstacles(const estimation::RobotState& state);
   void report_legs(const estimation::RobotState& state);
   void report_jump();
+  void report_stereo();
 
   robot::RobotModel model_;
   AutonomyConfig config_;
@@ -91,6 +102,8 @@ class Autonomy {
   estimation::Estimator estimator_;
   PoseHistory history_;
   MapTask map_;
+  StereoTask stereo_;
+  StereoTrigger trigger_;
   Mission mission_;
   control::StandUp stand_up_;
   control::Recovery recovery_;

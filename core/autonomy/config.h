@@ -3,6 +3,7 @@
 
 #include "core/actuation/joint_bus.h"
 #include "core/autonomy/jump_pilot_config.h"
+#include "core/autonomy/stereo_config.h"
 #include "core/base/fixed_vector.h"
 #include "core/base/parameters.h"
 #include "core/control/config.h"
@@ -143,6 +144,7 @@ struct AutonomyConfig {
   motions::JumpConfig jump;
   JumpPilotConfig jump_pilot;
   motions::MotionLibrary motions;  // none where the mission does not jump
+  StereoConfig stereo;               // where the robot has a stereo camera
   MissionConfig mission;
 
   template <class Self, class Visitor>
@@ -157,6 +159,7 @@ struct AutonomyConfig {
     visit.group("jump", self.jump);
     visit.group("jump_pilot", self.jump_pilot);
     visit.list("motions", self.motions);
+    visit.optional("stereo", self.stereo);
     visit.group("mission", self.mission);
   }
 };

@@ -1,5 +1,7 @@
 #include "core/autonomy/map_task.h"
 
+#include <algorithm>
+
 #include "core/robot/kinematics.h"
 
 namespace surefoot::autonomy {
@@ -26,20 +28,32 @@ void clear(mapping::MapWindow& window) {
 
 }  // namespace
 
+geometry::Pose<geometry::Body, geometry::DepthCamera> optical_pose(
+    const robot::SensorMount& mount) {
+  geometry::Pose<geometry::Body, geometry::DepthCamera> X_BC;
+  const auto& rpy = mount.roll_pitch_yaw_rad;
+  X_BC.rotation.matrix = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]) * optical_axes();
+  X_BC.origin.m = from_array(mount.position_B_m);
+  return X_BC;
+}
+
+MapCamera depth_map_camera(const robot::RobotModel& model) {
+  return {optical_pose(model.depth_camera.mount), mapping::sensor_model(model.depth_camera)};
+}
+
 Status MapTask::reset(const mapping::MappingConfig& config,
-                      const mapping::TraversabilityLimits& limits, const robot::RobotModel& model) {
+                      const mapping::TraversabilityLimits& limits, const robot::RobotModel& model,
+                      const MapCamera& camera) {
   model_ = model;
   enabled_ = config.enabled;
   counters_ = MapTaskCounters{};
-  const robot::SensorMount& mount = model.depth_camera.mount;
-  const auto& rpy = mount.roll_pitch_yaw_rad;
-  X_BC_.rotation.matrix = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]) * optical_axes();
-  X_BC_.origin.m = from_array(mount.position_B_m);
-  const Status status =
-      mapper_.configure(config, mapping::sensor_model(model.depth_camera), limits);
+  X_BC_ = camera.X_BC;
+  const Status status = mapper_.configure(config, camera.sensor, limits);
   if (!ok(status)) return status;
   // Touch every page now: no page fault may happen in a tick.
   frame_.depth.fill(0);
+  has_noise_ = false;
+  noise_.factors.fill(0);
   clear(working_);
   clear(window_);
   window_digest_ = window_.digest();
@@ -66,8 +80,8 @@ Status MapTask::assume_pad(const mapping::AssumedPad& pad) {
   return copied;
 }
 
-bool MapTask::release(const hal::DepthFrame& frame, const PoseHistory& history,
-                      const Vector3& window_centre_O_m) {
+bool MapTask::release(const hal::DepthFrame& frame, const mapping::DepthNoise* noise,
+                      const PoseHistory& history, const Vector3& window_centre_O_m) {
   if (!enabled_) return false;
   const Result<PastPose> pose = history.at(frame.stamp);
   if (!pose.ok()) {
@@ -76,6 +90,11 @@ bool MapTask::release(const hal::DepthFrame& frame, const PoseHistory& history,
   }
   pose_ = pose.value();
   frame_ = frame;
+  has_noise_ = noise != nullptr;
+  if (has_noise_) {
+    std::copy_n(noise->factors.begin(), std::min(frame.pixel_count(), noise_.factors.size()),
+                noise_.factors.begin());
+  }
   window_centre_O_m_ = window_centre_O_m;
   return true;
 }
@@ -106,7 +125,8 @@ mapping::SelfModel MapTask::self_model() const {
 void MapTask::run() {
   const mapping::SelfModel self = self_model();
   mapping::IntegrationReport report;
-  const Status status = mapper_.integrate(frame_, self.X_OB * X_BC_, self, &report);
+  const Status status = mapper_.integrate(frame_, self.X_OB * X_BC_, self, &report,
+                                           has_noise_ ? &noise_ : nullptr);
   if (ok(status)) {
     ++counters_.frames_integrated;
     if (report.rows_put_off + report.rays_put_off > 0) ++counters_.frames_bounded;

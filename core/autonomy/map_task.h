@@ -26,11 +26,21 @@ struct MapTaskCounters {
   }
 };
 
+// Where the pictures of depth come from: the frame C of their camera and its noise.
+struct MapCamera {
+  geometry::Pose<geometry::Body, geometry::DepthCamera> X_BC;
+  mapping::DepthSensorModel sensor;
+};
+
+// Optical axes of a camera in a housing mounted like that.
+geometry::Pose<geometry::Body, geometry::DepthCamera> optical_pose(const robot::SensorMount& mount);
+MapCamera depth_map_camera(const robot::RobotModel& model);
+
 class MapTask {
  public:
   // kInvalid: configuration out of its domain.
   Status reset(const mapping::MappingConfig& config, const mapping::TraversabilityLimits& limits,
-               const robot::RobotModel& model);
+               const robot::RobotModel& model, const MapCamera& camera);
 
   // Finds obstacles in every window from now on.
   void watch_obstacles(const obstacles::ObstacleConfig& config,
@@ -46,9 +56,10 @@ class MapTask {
     return mapper_.forget(x_O_m, y_O_m, half_side_m);
   }
 
-  // Copies frame and pose. false: mapping is off or the frame's stamp has no pose (counted).
-  bool release(const hal::DepthFrame& frame, const PoseHistory& history,
-               const Vector3& window_centre_O_m);
+  // Copies frame, noise (null: the sensor's) and pose. false: mapping is off or the frame's stamp
+  // has no pose (counted).
+  bool release(const hal::DepthFrame& frame, const mapping::DepthNoise* noise,
+               const PoseHistory& history, const Vector3& window_centre_O_m);
   // May run anywhere between release and publish.
   void run();
   void publish();
@@ -67,6 +78,8 @@ class MapTask {
   bool enabled_ = false;
   geometry::Pose<geometry::Body, geometry::DepthCamera> X_BC_;
   hal::DepthFrame frame_{};
+  bool has_noise_ = false;
+  mapping::DepthNoise noise_{};
   PastPose pose_;
   Vector3 window_centre_O_m_ = Vector3::Zero();
   MapTaskCounters counters_;

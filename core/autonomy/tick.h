@@ -17,6 +17,7 @@
 #include "hal/api/imu_port.h"
 #include "hal/api/operator_port.h"
 #include "hal/api/pose_port.h"
+#include "hal/api/stereo_camera_port.h"
 
 namespace surefoot::autonomy {
 
@@ -25,8 +26,9 @@ inline constexpr std::size_t kMaxImuSamplesPerTick = 16;
 inline constexpr std::size_t kMaxPoseSamplesPerTick = 8;
 inline constexpr std::size_t kMaxSlowTasks = 8;
 
-// Everything a tick may depend on, latched once by the executive. Depth frames are large and rare:
-// they are kept beside this struct and recorded on a channel of their own, just before the tick.
+// Everything a tick may depend on, latched once by the executive. Depth frames and stereo pairs are
+// large and rare: they are kept beside this struct and recorded on channels of their own, just
+// before the tick.
 struct TickInputs {
   std::uint64_t tick = 0;
   TimeNs stamp;       // logical time of the tick
@@ -38,6 +40,8 @@ struct TickInputs {
   hal::OperatorCommand operator_command;  // meaningful where operator_fresh
   bool depth_fresh = false;
   const hal::DepthFrame* depth = nullptr;  // valid during the tick where depth_fresh; not a field
+  bool stereo_fresh = false;
+  const hal::StereoFrame* stereo = nullptr;  // likewise, where stereo_fresh
   // Bit i: slow task i of the table was due at this tick but had not finished (an overrun). Its
   // result stays back until the first tick where the bit is clear.
   std::uint32_t slow_task_overruns = 0;
@@ -53,6 +57,7 @@ struct TickInputs {
     visit("operator_fresh", self.operator_fresh);
     if (self.operator_fresh) visit("operator_command", self.operator_command);
     visit("depth_fresh", self.depth_fresh);
+    visit("stereo_fresh", self.stereo_fresh);
     visit("slow_task_overruns", self.slow_task_overruns);
   }
 };
@@ -150,6 +155,24 @@ struct ObstacleTelemetry {
   }
 };
 
+// What became of the stereo camera's pairs.
+struct StereoTelemetry {
+  std::uint64_t triggers = 0;
+  std::uint64_t pairs_matched = 0;
+  std::uint64_t pairs_refused = 0;   // another size than the calibration's
+  std::uint64_t pairs_unusable = 0;  // too few disparities: nothing was mapped
+  double valid_share = 0;            // of the last pair's pixels, with a disparity in range
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("triggers", self.triggers);
+    visit("pairs_matched", self.pairs_matched);
+    visit("pairs_refused", self.pairs_refused);
+    visit("pairs_unusable", self.pairs_unusable);
+    visit("valid_share", self.valid_share);
+  }
+};
+
 // The jump pilot: what it does, and the edge it looks at.
 struct JumpTelemetry {
   PilotStage pilot = PilotStage::kWatch;
@@ -186,6 +209,7 @@ struct Telemetry {
   TrackingTelemetry tracking;
   ObstacleTelemetry obstacles;
   JumpTelemetry jump;
+  StereoTelemetry stereo;
   std::uint64_t depth_frames_mapped = 0;
   std::uint64_t map_digest = 0;  // hash of the published map window
   std::uint64_t replies_missed = 0;
@@ -205,6 +229,7 @@ struct Telemetry {
     visit("tracking", self.tracking);
     visit("obstacles", self.obstacles);
     visit("jump", self.jump);
+    visit("stereo", self.stereo);
     visit("depth_frames_mapped", self.depth_frames_mapped);
     visit("map_digest", self.map_digest);
     visit("replies_missed", self.replies_missed);
@@ -214,11 +239,13 @@ struct Telemetry {
 
 struct TickOutputs {
   FixedVector<hal::CanFrame, kMaxCanFramesPerTick> can;
+  bool stereo_trigger = false;  // asks the stereo camera for a pair
   Telemetry telemetry;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("can", self.can);
+    visit("stereo_trigger", self.stereo_trigger);
     visit("telemetry", self.telemetry);
   }
 };

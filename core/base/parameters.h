@@ -15,6 +15,7 @@
 //   reals(key, std::array<double, N>&, Range, doc)
 //   choice(key, Enum&, std::span<const char* const> names, doc)   // enumerators count from 0
 //   group(key, Struct&)
+//   optional(key, Struct&)               // a group that may be absent: Struct::present says
 //   groups(key, std::array<Struct, N>&)
 //   list(key, FixedVector<Struct, N>&)   // of any length up to N
 // The key carries the unit. There are no defaults: a key that is missing in the file is an error,
@@ -56,6 +57,10 @@ struct RangeCheck {
   template <class Group>
   void group(const char*, const Group& value) {
     Group::describe(value, *this);
+  }
+  template <class Group>
+  void optional(const char* key, const Group& value) {
+    if (value.present) group(key, value);
   }
 
   bool good = true;

@@ -45,6 +45,7 @@ void StaticWalk::reset(const ControlConfig& config, const robot::RobotModel& mod
 void StaticWalk::stand() {
   stage_ = Stage::kStand;
   turn_ = 0;
+  shifted_ = false;
   velocity_ = VelocityCommand{};
   blocked_s_ = 0;
   legs_.fill(LegStatus{});
@@ -80,6 +81,7 @@ const actuation::JointCommands& StaticWalk::update(const estimation::RobotState&
                                                    const VelocityCommand& velocity, bool walking,
                                                    GroundRule ground, double step_s) {
   map_offset_.update(state, legs_, window);
+  shifted_ = false;
   progress_ = math::clamp(progress_ + step_s / duration_s_, 0.0, 1.0);
   follow(velocity, step_s);
   if (walking) {
@@ -97,7 +99,8 @@ const actuation::JointCommands& StaticWalk::update(const estimation::RobotState&
       break;
     case Stage::kShift:
       load_[leg()] = 1.0 - quintic(progress_).value;
-      if (progress_ >= 1.0) lift(state, window);
+      shifted_ = progress_ >= 1.0;
+      if (shifted_) lift(state, window);
       break;
     case Stage::kSwing: swing(state, step_s); break;
   }

@@ -69,6 +69,8 @@ class StaticWalk {
     return control::gait_phases(legs_);
   }
   bool at_rest() const { return stage_ == Stage::kStand; }
+  // In the tick at whose end the trunk has come to rest over its feet and a foot will lift off.
+  bool shifted() const { return shifted_; }
   // How long there has been no foothold for the leg whose turn it is.
   double blocked_s() const { return blocked_s_; }
   const StaticWalkCounters& counters() const { return counters_; }
@@ -125,6 +127,7 @@ class StaticWalk {
   WholeBody whole_body_;
   Stage stage_ = Stage::kStand;
   std::size_t turn_ = 0;   // in the order of legs
+  bool shifted_ = false;   // the shift ended in this tick
   double progress_ = 0;    // of the shift
   double duration_s_ = 1;  // of the shift
   Pose from_;

@@ -99,6 +99,17 @@ void copy_pixels(const hal::DepthFrame& frame, const SurfaceTest& test, float mi
   }
 }
 
+void copy_noise(const DepthNoise& noise, std::size_t full_width, DepthImage& out) {
+  for (std::int32_t v = 0; v < out.height; ++v) {
+    const std::uint16_t* row =
+        noise.factors.data() + static_cast<std::size_t>(v * out.stride) * full_width;
+    for (std::int32_t u = 0; u < out.width; ++u) {
+      out.noise[out.at(u, v)] =
+          static_cast<float>(row[u * out.stride]) * (1.0F / DepthNoise::kUnit);
+    }
+  }
+}
+
 // 0 is both "no measurement" and the least number, so one minimum serves both.
 void find_nearest(DepthImage& out) {
   out.farthest_m = 0;
@@ -124,10 +135,12 @@ void find_nearest(DepthImage& out) {
 }  // namespace
 
 void prepare(const hal::DepthFrame& frame, const MappingConfig& config,
-             const DepthSensorModel& sensor, DepthImage& out) {
+             const DepthSensorModel& sensor, DepthImage& out, const DepthNoise* noise) {
   set_geometry(frame.intrinsics, config.pixel_stride, out);
   const SurfaceTest test(frame, config, sensor);
   copy_pixels(frame, test, static_cast<float>(sensor.min_range_m), out);
+  out.has_noise = noise != nullptr;
+  if (out.has_noise) copy_noise(*noise, frame.intrinsics.width_px, out);
   find_nearest(out);
 }
 

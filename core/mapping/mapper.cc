@@ -99,11 +99,12 @@ Status Mapper::check(const hal::DepthFrame& frame, const CameraPose& X_OC,
 }
 
 Status Mapper::integrate(const hal::DepthFrame& frame, const CameraPose& X_OC,
-                         const SelfModel& self, IntegrationReport* report) {
+                         const SelfModel& self, IntegrationReport* report,
+                         const DepthNoise* noise) {
   const Status status = check(frame, X_OC, self);
   if (!ok(status)) return status;
   IntegrationReport counts;
-  prepare(frame, config_, sensor_, image_);
+  prepare(frame, config_, sensor_, image_, noise);
   gather(X_OC, self, counts);
   if (scan_.size() > 0) {
     const Vector3& body = self.X_OB.origin.m;

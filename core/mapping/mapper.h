@@ -55,11 +55,12 @@ class Mapper {
   // One depth frame, taken from X_OC at frame.stamp. The map follows the body.
   // kUnavailable: not configured or mapping disabled. kInvalid: header or pose breaks its domain,
   // or the stamp is not after the last one. kOutOfRange: body or camera unmappable. kNotFound: no
-  // pixel can be used. `report`, when given, is written only on kOk and kNotFound. Cost: bounded by
+  // pixel can be used. `report`, when given, is written only on kOk and kNotFound. `noise`: of each
+  // pixel, null where all have the sensor's. Cost: bounded by
   // kMaxPixels points, one look at each cell within kMaxClearRadius_cells of the camera, and
   // kMaxPixels / ceiling_pixel_stride^2 rays of kMaxCellsPerRay cells.
   Status integrate(const hal::DepthFrame& frame, const CameraPose& X_OC, const SelfModel& self,
-                   IntegrationReport* report = nullptr);
+                   IntegrationReport* report = nullptr, const DepthNoise* noise = nullptr);
 
   // Copies and classifies the 100 x 100 cells around a position. kUnavailable: not configured.
   // kInvalid, kOutOfRange: position not finite or unmappable, `out` unchanged. Cells beyond the map

@@ -46,6 +46,7 @@ void PointMaker::make(std::int32_t u, std::int32_t v, std::int32_t count, ScanPo
   const Vector3 row = R_OC.col(1) * image_.down[static_cast<std::size_t>(v)] + R_OC.col(2);
   const double* across_from = image_.across.data() + u;
   const float* depth_from = image_.z_m.data() + image_.at(u, v);
+  const float* noise_from = image_.has_noise ? image_.noise.data() + image_.at(u, v) : nullptr;
   for (std::int32_t i = 0; i < count; i += kDoubleLanes) {
     const DoubleLanes across = load_lanes(across_from + i);
     const DoubleLanes measured = load_widened(depth_from + i);
@@ -56,7 +57,8 @@ void PointMaker::make(std::int32_t u, std::int32_t v, std::int32_t count, ScanPo
     const DoubleLanes direction_z = R_OC(2, 0) * across + row.z();
     const DoubleLanes x = camera.x() + offset_x;
     const DoubleLanes y = camera.y() + offset_y;
-    const DoubleLanes depth_sigma = depth * depth * inverse_depth_sigma_per_m_;
+    DoubleLanes depth_sigma = depth * depth * inverse_depth_sigma_per_m_;
+    if (noise_from != nullptr) depth_sigma = depth_sigma * load_widened(noise_from + i);
     const DoubleLanes depth_variance = depth_sigma * depth_sigma + floor_variance_m2_;
     const DoubleLanes variance = depth_variance * (direction_z * direction_z) + 1e-8;
     const DoubleLanes range2 = offset_x * offset_x + offset_y * offset_y;

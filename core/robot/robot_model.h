@@ -149,7 +149,7 @@ struct DepthCameraSpecification {
     visit.integer("height_px", self.height_px, {16, 480}, "delivered image");
     visit.real("horizontal_view_rad", self.horizontal_view_rad, {0.2, 2.8}, "full angle");
     visit.real("vertical_view_rad", self.vertical_view_rad, {0.2, 2.8}, "full angle");
-    visit.real("rate_Hz", self.rate_Hz, {1.0, 120.0}, "frames per second");
+    visit.real("rate_Hz", self.rate_Hz, {0.0, 120.0}, "frames per second; 0: no such camera");
     visit.real("min_range_m", self.min_range_m, {0.01, 2.0}, "nearest depth");
     visit.real("max_range_m", self.max_range_m, {0.2, 50.0}, "farthest depth");
     visit.real("disparity_noise_px", self.disparity_noise_px, {0.0, 2.0}, "one sigma");
@@ -167,6 +167,53 @@ struct TrackingCameraSpecification {
   static void describe(Self& self, Visitor& visit) {
     visit.group("mount", self.mount);
     visit.real("rate_Hz", self.rate_Hz, {0.0, 1000.0}, "samples per second; 0: no such camera");
+  }
+};
+
+// One camera of a stereo pair as OpenCV calibrates it.
+struct StereoLens {
+  std::array<double, 9> matrix{};      // row by row: fx 0 cx, 0 fy cy, 0 0 1 [px]
+  std::array<double, 8> distortion{};  // k1 k2 p1 p2 k3 k4 k5 k6
+};
+
+// What OpenCV's stereo calibration says of a pair; the keys are those of its files.
+struct StereoCameraCalibration {
+  std::uint16_t width_px = 0;  // of both pictures
+  std::uint16_t height_px = 0;
+  StereoLens left;
+  StereoLens right;
+  std::array<double, 9> R_EV{};    // turns the left camera's axes into the right one's, row by row
+  std::array<double, 3> p_EV_m{};  // the left camera from the right one
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.integer("image_width", self.width_px, {16, 1024}, "pixels");
+    visit.integer("image_height", self.height_px, {16, 768}, "pixels");
+    visit.reals("camera_matrix_left", self.left.matrix, {-1e5, 1e5}, "row by row");
+    visit.reals("distortion_coefficients_left", self.left.distortion, {-999.0, 999.0},
+                "k1 k2 p1 p2 k3 k4 k5 k6");
+    visit.reals("camera_matrix_right", self.right.matrix, {-1e5, 1e5}, "row by row");
+    visit.reals("distortion_coefficients_right", self.right.distortion, {-999.0, 999.0},
+                "k1 k2 p1 p2 k3 k4 k5 k6");
+    visit.reals("R", self.R_EV, {-1.0001, 1.0001}, "from the left to the right camera's axes");
+    visit.reals("T", self.p_EV_m, {-10.0, 10.0}, "metres, the left camera from the right one");
+  }
+};
+
+// Two grey cameras that are exposed together, on demand.
+struct StereoCameraSpecification {
+  bool present = false;
+  SensorMount mount;  // of the left camera
+  double min_range_m = 0;
+  double max_range_m = 0;
+  StereoCameraCalibration calibration;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.group("mount", self.mount);
+    visit.real("min_range_m", self.min_range_m, {0.01, 2.0}, "nearest distance along the axis");
+    visit.real("max_range_m", self.max_range_m, {0.2, 50.0}, "farthest distance along the axis");
+    visit.group("calibration", self.calibration);
   }
 };
 
@@ -197,6 +244,7 @@ struct RobotModel {
   ImuSpecification imu;
   DepthCameraSpecification depth_camera;
   TrackingCameraSpecification tracking_camera;
+  StereoCameraSpecification stereo_camera;
 
   double total_mass_kg() const {
     double rotors = 0;
@@ -254,6 +302,7 @@ struct RobotModel {
     visit.group("imu", self.imu);
     visit.group("depth_camera", self.depth_camera);
     visit.group("tracking_camera", self.tracking_camera);
+    visit.optional("stereo_camera", self.stereo_camera);
   }
 };
 

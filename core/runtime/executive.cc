@@ -107,6 +107,7 @@ void Executive::run_tick_body(Status woke) {
   const TimeNs begin = stopwatch();
   inline_time_ = {};
   outputs_.can.clear();
+  outputs_.stereo_trigger = false;
   latch(woke);
   publish_due();
   run_table();
@@ -127,6 +128,7 @@ void Executive::latch(Status woke) {
   inputs_.operator_fresh =
       board.operator_port != nullptr && ok(board.operator_port->receive(inputs_.operator_command));
   latch_depth();
+  latch_stereo();
   latch_overruns();
 }
 
@@ -160,6 +162,21 @@ void Executive::latch_depth() {
   inputs_.depth_fresh = true;
   inputs_.depth = &depth_;
   store_record(hal::RecordChannel::kDepth, std::span(depth_bytes_).first(depth_bytes_size_));
+}
+
+void Executive::latch_stereo() {
+  inputs_.stereo_fresh = false;
+  inputs_.stereo = nullptr;
+  stereo_bytes_size_ = 0;
+  if (setup_.board.stereo_camera == nullptr) return;
+  if (!ok(setup_.board.stereo_camera->receive(stereo_))) return;
+  if (!ok(encode_stereo(stereo_, stereo_bytes_, stereo_bytes_size_))) {
+    ++counters_.stereo_invalid;
+    return;
+  }
+  inputs_.stereo_fresh = true;
+  inputs_.stereo = &stereo_;
+  store_record(hal::RecordChannel::kStereo, std::span(stereo_bytes_).first(stereo_bytes_size_));
 }
 
 void Executive::latch_overruns() {
@@ -234,6 +251,10 @@ void Executive::commit() {
       if (!ok(setup_.board.can->send(frame))) ++counters_.sends_refused;
     }
   }
+  if (outputs_.stereo_trigger) {
+    hal::StereoCameraPort* const camera = setup_.board.stereo_camera;
+    if (camera == nullptr || !ok(camera->trigger())) ++counters_.triggers_refused;
+  }
   FieldWriter writer(tick_bytes_);
   writer.members(inputs_);
   const std::size_t inputs_size = writer.size();
@@ -244,6 +265,7 @@ void Executive::commit() {
   chain.word(hash_, sizeof(hash_));
   chain.bytes(tick_bytes_.data(), inputs_size);
   chain.bytes(depth_bytes_.data(), depth_bytes_size_);
+  chain.bytes(stereo_bytes_.data(), stereo_bytes_size_);
   chain.bytes(tick_bytes_.data() + inputs_size, outputs_size);
   hash_ = chain.value();
 

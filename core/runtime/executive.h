@@ -2,7 +2,8 @@
 //   1. waits for the tick's deadline (the only place that reads a clock),
 //   2. latches every input once into TickInputs,
 //   3. runs the table,
-//   4. commits: sends the outputs, extends the hash chain, writes the record.
+//   4. commits: sends the outputs, triggers the stereo camera where they say so, extends the hash
+//      chain, writes the record.
 //
 // Logical execution time. A task with latency 0 runs release, run and publish within its tick, in
 // table order. A task with latency k > 0 is released at tick r (release() copies what it needs),
@@ -15,15 +16,15 @@
 // release() that answers false when there is none; it is not asked while it is pending, so events
 // closer together than the latency are passed over. Only ticks lost to an overrun count as skipped.
 //
-// Hash chain: h[t] = Fnv64(h[t-1], canonical bytes of TickInputs, of the depth frame where fresh,
-// of TickOutputs), h[-1] = 0. Execution times never enter it.
+// Hash chain: h[t] = Fnv64(h[t-1], canonical bytes of TickInputs, of the depth frame and of the
+// stereo pair where fresh, of TickOutputs), h[-1] = 0. Execution times never enter it.
 //
-// TickOutputs: the list of CAN frames is emptied before each tick; telemetry keeps its values until
-// a task writes them again.
+// TickOutputs: the list of CAN frames is emptied and the trigger cleared before each tick; telemetry
+// keeps its values until a task writes them again.
 //
-// Fixed memory (about 1.3 MB, most of it one depth frame and its bytes); no heap; the object
-// belongs into static storage. Cost of a tick without tasks: O(inputs + outputs) bytes, plus one
-// pass over the depth frame when there is one.
+// Fixed memory (about 4.4 MB, most of it one depth frame, one stereo pair and their bytes); no heap;
+// the object belongs into static storage. Cost of a tick without tasks: O(inputs + outputs) bytes,
+// plus one pass over the frame or pair when there is one.
 #pragma once
 
 #include <array>
@@ -89,6 +90,8 @@ struct ExecutiveCounters {
   std::uint64_t pose_dropped = 0;
   std::uint64_t sends_refused = 0;    // by the port, of kMaxCanFramesPerTick at most per tick
   std::uint64_t depth_invalid = 0;    // frames whose size exceeds the capacity: ignored
+  std::uint64_t stereo_invalid = 0;   // pairs, likewise
+  std::uint64_t triggers_refused = 0;  // by the stereo camera, or there is none
   std::uint64_t records_refused = 0;  // by the record sink
   std::uint64_t overrun_ticks = 0;    // ticks at which a slow task was due but not done
 };
@@ -133,6 +136,7 @@ class Executive {
   void latch(Status woke);
   void latch_can();
   void latch_depth();
+  void latch_stereo();
   void latch_overruns();
   void publish_due();
   void run_table();
@@ -157,6 +161,9 @@ class Executive {
   hal::DepthFrame depth_{};
   std::size_t depth_bytes_size_ = 0;
   std::array<std::uint8_t, kMaxDepthBytes> depth_bytes_{};
+  hal::StereoFrame stereo_{};
+  std::size_t stereo_bytes_size_ = 0;
+  std::array<std::uint8_t, kMaxStereoBytes> stereo_bytes_{};
   std::array<std::uint8_t, kMaxTickBytes> tick_bytes_{};
 };
 

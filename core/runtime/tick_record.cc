@@ -23,7 +23,7 @@ class UncheckedWriter : public FieldVisitor<UncheckedWriter> {
 };
 
 // All fields before the pixels take less than this.
-constexpr std::size_t kDepthHeaderBound = 64;
+constexpr std::size_t kHeaderBound = 64;
 
 }  // namespace
 
@@ -31,13 +31,14 @@ Status decode_tick(std::span<const std::uint8_t> bytes, TickRecord& out) {
   FieldReader reader(bytes);
   reader.members(out);
   out.inputs.depth = nullptr;
+  out.inputs.stereo = nullptr;
   if (!ok(reader.status())) return reader.status();
   return reader.position() == bytes.size() ? Status::kOk : Status::kCorrupt;
 }
 
 Status encode_depth(const hal::DepthFrame& frame, std::span<std::uint8_t> out, std::size_t& size) {
   if (frame.pixel_count() > frame.depth.size()) return Status::kInvalid;
-  if (out.size() < kDepthHeaderBound + 2 * frame.pixel_count()) return Status::kExhausted;
+  if (out.size() < kHeaderBound + 2 * frame.pixel_count()) return Status::kExhausted;
   UncheckedWriter writer(out.data());
   writer.members(frame);
   size = writer.size();
@@ -49,6 +50,24 @@ Status decode_depth(std::span<const std::uint8_t> bytes, hal::DepthFrame& out) {
   reader.members(out);
   if (!ok(reader.status())) return reader.status();
   if (out.pixel_count() > out.depth.size()) return Status::kCorrupt;
+  return reader.position() == bytes.size() ? Status::kOk : Status::kCorrupt;
+}
+
+Status encode_stereo(const hal::StereoFrame& frame, std::span<std::uint8_t> out,
+                     std::size_t& size) {
+  if (frame.pixel_count() > frame.left.size()) return Status::kInvalid;
+  if (out.size() < kHeaderBound + 2 * frame.pixel_count()) return Status::kExhausted;
+  UncheckedWriter writer(out.data());
+  writer.members(frame);
+  size = writer.size();
+  return Status::kOk;
+}
+
+Status decode_stereo(std::span<const std::uint8_t> bytes, hal::StereoFrame& out) {
+  FieldReader reader(bytes);
+  reader.members(out);
+  if (!ok(reader.status())) return reader.status();
+  if (out.pixel_count() > out.left.size()) return Status::kCorrupt;
   return reader.position() == bytes.size() ? Status::kOk : Status::kCorrupt;
 }
 

@@ -12,10 +12,13 @@
 
 namespace surefoot::runtime {
 
-// A tick with every list full needs 14.3 kB, a full depth frame 600 kB and a header.
+// A tick with every list full needs 14.3 kB, a full depth frame 600 kB and a header, a full stereo
+// pair 1.5 MB.
 inline constexpr std::size_t kMaxTickBytes = 16 * 1024;
 inline constexpr std::size_t kMaxDepthBytes =
     2 * hal::kMaxDepthWidth_px * hal::kMaxDepthHeight_px + 64;
+inline constexpr std::size_t kMaxStereoBytes =
+    2 * hal::kMaxStereoWidth_px * hal::kMaxStereoHeight_px + 64;
 
 struct TickRecord {
   autonomy::TickInputs inputs;
@@ -30,7 +33,7 @@ struct TickRecord {
   }
 };
 
-// Decodes one kTick message; inputs.depth is left null. kCorrupt: too short, too long, or a list
+// Decodes one kTick message; inputs.depth and .stereo are left null. kCorrupt: too short, too long, or a list
 // beyond its capacity; `out` is then partly overwritten.
 Status decode_tick(std::span<const std::uint8_t> bytes, TickRecord& out);
 
@@ -41,5 +44,9 @@ Status encode_depth(const hal::DepthFrame& frame, std::span<std::uint8_t> out, s
 
 // Decodes one kDepth message. kCorrupt: lengths do not agree; `out` is then partly overwritten.
 Status decode_depth(std::span<const std::uint8_t> bytes, hal::DepthFrame& out);
+
+// The same for stereo pairs, on channel kStereo.
+Status encode_stereo(const hal::StereoFrame& frame, std::span<std::uint8_t> out, std::size_t& size);
+Status decode_stereo(std::span<const std::uint8_t> bytes, hal::StereoFrame& out);
 
 }  // namespace surefoot::runtime

@@ -73,7 +73,24 @@ Vector2 middle_of_view(const StereoCalibration& calibration, const RectifiedPair
   return sum / 8.0;
 }
 
+CameraModel camera_model(const robot::StereoCameraCalibration& file,
+                         const robot::StereoLens& lens) {
+  return {file.width_px,  file.height_px, lens.matrix[0], lens.matrix[4],
+          lens.matrix[2], lens.matrix[5], lens.distortion};
+}
+
 }  // namespace
+
+StereoCalibration stereo_calibration(const robot::StereoCameraCalibration& file) {
+  StereoCalibration calibration;
+  calibration.left = camera_model(file, file.left);
+  calibration.right = camera_model(file, file.right);
+  for (Eigen::Index i = 0; i < 9; ++i) {
+    calibration.R_EV(i / 3, i % 3) = file.R_EV[static_cast<std::size_t>(i)];
+  }
+  calibration.p_EV_m = Vector3(file.p_EV_m[0], file.p_EV_m[1], file.p_EV_m[2]);
+  return calibration;
+}
 
 Vector2 CameraModel::project(double x, double y) const {
   const Distortion at = distortion_at(distortion, x, y);

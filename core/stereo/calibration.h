@@ -10,6 +10,7 @@
 
 #include "core/base/status.h"
 #include "core/math/linear.h"
+#include "core/robot/robot_model.h"
 
 namespace surefoot::stereo {
 
@@ -38,6 +39,9 @@ struct StereoCalibration {
   Matrix3 R_EV = Matrix3::Identity();  // turns the left camera's axes into the right one's
   Vector3 p_EV_m = Vector3::Zero();    // the left camera from the right one; OpenCV's T
 };
+
+// The same from a robot's file.
+StereoCalibration stereo_calibration(const robot::StereoCameraCalibration& file);
 
 // Two ideal cameras side by side: disparity = focal * baseline / z.
 struct RectifiedPair {

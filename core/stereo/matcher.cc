@@ -204,17 +204,23 @@ void Matcher::choose(std::size_t column) {
                                                         : kAmbiguous;
 }
 
-// Sub-pixel part from the sums beside the least: two lines of equal slope (equiangular fit).
+// Sub-pixel part from the sums beside the least: two lines of equal slope (equiangular fit). Only of
+// the paths along the row: where disparities change from row to row, the path from above prefers
+// whole steps of the row before, and its sums would drag the value after it.
 std::int16_t Matcher::subpixel(std::size_t column, std::int32_t index) const {
   const std::int32_t whole = (last_px_ - index) * kSubpixels;
   if (index == 0 || index + 1 == config_.disparities) return static_cast<std::int16_t>(whole);
-  const std::uint8_t* sum =
-      sums_.data() + column * config_.disparities + static_cast<std::size_t>(index);
-  const std::int32_t larger_side = sum[-1] - sum[0];  // larger disparity
-  const std::int32_t smaller_side = sum[1] - sum[0];
+  const auto at = static_cast<std::size_t>(index);
+  const std::uint8_t* sum = sums_.data() + column * config_.disparities + at;
+  const std::uint8_t* down = down_[above_].costs.data() + column * stride_ + kPad + at;
+  const std::int32_t least = sum[0] - down[0];
+  const std::int32_t larger_side = sum[-1] - down[-1] - least;  // larger disparity
+  const std::int32_t smaller_side = sum[1] - down[1] - least;
   const std::int32_t steeper = std::max(larger_side, smaller_side);
   if (steeper <= 0) return static_cast<std::int16_t>(whole);
-  const std::int32_t shift = (smaller_side - larger_side) * (kSubpixels / 2) / steeper;
+  // The least of all three paths need not be that of two.
+  const std::int32_t shift = std::clamp((smaller_side - larger_side) * (kSubpixels / 2) / steeper,
+                                        -kSubpixels / 2, kSubpixels / 2);
   return static_cast<std::int16_t>(whole + shift);
 }
 

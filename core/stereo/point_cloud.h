@@ -20,6 +20,7 @@ struct PointConfig {
   double max_range_m = 0;
   double disparity_floor_px = 0;
   double grey_noise = 0;
+  double relief_share = 0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -30,6 +31,8 @@ struct PointConfig {
                "one sigma of a disparity where contrast is high");
     visit.real("grey_noise", self.grey_noise, {0.0, 100.0},
                "one sigma of a disparity, in pixels, times the grey levels of contrast");
+    visit.real("relief_share", self.relief_share, {0.0, 4.0},
+               "one sigma of a disparity per pixel by which the surface around it is no plane");
   }
 };
 
@@ -42,7 +45,15 @@ struct StereoPoint {
 
 using PointCloud = FixedVector<StereoPoint, kMaxPoints>;
 
-// sigma_z = z^2 / (focal baseline) sigma_d, sigma_d^2 = floor^2 + (grey_noise / contrast)^2.
+// Variance of the disparity at a pixel that has one, floor^2 + (grey_noise / contrast)^2 +
+// (relief_share * relief)^2. The relief says by how much the disparities kReliefReach_px to both
+// sides and above and below leave the line through the pixel: the windows of census and smoothing
+// take such a surface for a plane. Neighbours beyond the picture or without disparity tell nothing.
+inline constexpr std::size_t kReliefReach_px = 3;
+double disparity_variance_px2(const DisparityImage& image, std::size_t u, std::size_t v,
+                              const PointConfig& config);
+
+// sigma_z = z^2 / (focal baseline) sigma_d.
 // kExhausted: kMaxPoints reached, the rows below are left out. kInvalid: sizes differ, or a value
 // of the configuration is out of range; the cloud is empty then. Cost: O(pixels).
 Status make_points(const DisparityImage& image, const RectifiedPair& pair,

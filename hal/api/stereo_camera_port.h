@@ -22,14 +22,16 @@ struct StereoFrame {
   std::array<std::uint8_t, kMaxStereoWidth_px * kMaxStereoHeight_px> left{};  // row-major grey
   std::array<std::uint8_t, kMaxStereoWidth_px * kMaxStereoHeight_px> right{};
 
+  std::size_t pixel_count() const { return static_cast<std::size_t>(width_px) * height_px; }
+
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("stamp_ns", self.stamp);
     visit("sequence", self.sequence);
     visit("width_px", self.width_px);
     visit("height_px", self.height_px);
-    std::size_t count = static_cast<std::size_t>(self.width_px) * self.height_px;
-    if (count > self.left.size()) count = 0;
+    std::size_t count = self.pixel_count();
+    if (count > self.left.size()) count = 0;  // damaged header: the caller checks pixel_count()
     for (std::size_t i = 0; i < count; ++i) visit("left", self.left[i]);
     for (std::size_t i = 0; i < count; ++i) visit("right", self.right[i]);
   }

@@ -103,6 +103,30 @@ class ReplayDepth final : public DepthCameraPort {
   SensorCounters counters_;
 };
 
+class ReplayStereo final : public StereoCameraPort {
+ public:
+  explicit ReplayStereo(const runtime::TickRecord& tick) : tick_(tick) {}
+  void rewind() { waiting_ = tick_.inputs.stereo_fresh; }
+  StereoFrame& frame() { return frame_; }
+
+ private:
+  // What came of it is in the record.
+  Status do_trigger() override { return Status::kOk; }
+  Status do_receive(StereoFrame& out) override {
+    if (!waiting_) return Status::kUnavailable;
+    waiting_ = false;
+    out = frame_;
+    ++counters_.delivered;
+    return Status::kOk;
+  }
+  SensorCounters do_counters() const override { return counters_; }
+
+  const runtime::TickRecord& tick_;
+  bool waiting_ = false;
+  StereoFrame frame_;
+  SensorCounters counters_;
+};
+
 }  // namespace
 
 struct ReplayBoard::Impl final : public Clock {
@@ -123,6 +147,9 @@ struct ReplayBoard::Impl final : public Clock {
   ReplayDepth depth{tick};
   bool depth_read = false;
   TimeNs depth_stamp;  // of the tick that latched the frame read last
+  ReplayStereo stereo{tick};
+  bool stereo_read = false;
+  TimeNs stereo_stamp;  // likewise
 
   virtual ~Impl() = default;
   void read_tick();
@@ -144,6 +171,7 @@ void ReplayBoard::Impl::stop(ReplayEnd how, const std::string& reason,
 // Reads up to the next tick; afterwards tick_waits or end is set.
 void ReplayBoard::Impl::read_tick() {
   depth_read = false;
+  stereo_read = false;
   RecordMessage message;
   while (!tick_waits && end == ReplayEnd::kNotYet) {
     const Status status = reader.next(message);
@@ -172,8 +200,15 @@ bool ReplayBoard::Impl::take(const RecordMessage& message) {
       depth_read = true;
       depth_stamp = message.stamp;
       return false;
+    case RecordChannel::kStereo:
+      if (!ok(runtime::decode_stereo(message.bytes, stereo.frame()))) {
+        stop(ReplayEnd::kDamaged, "a stereo pair does not decode: of another version?", message);
+      }
+      stereo_read = true;
+      stereo_stamp = message.stamp;
+      return false;
     case RecordChannel::kTick: return take_tick(message);
-    default: return false;  // lidar and stereo frames are not inputs of a tick yet
+    default: return false;  // lidar scans are not inputs of a tick yet
   }
 }
 
@@ -194,6 +229,11 @@ bool ReplayBoard::Impl::take_tick(const RecordMessage& message) {
          message);
     return false;
   }
+  if (tick.inputs.stereo_fresh && !(stereo_read && stereo_stamp == tick.inputs.stamp)) {
+    stop(ReplayEnd::kGap, "the stereo pair of tick " + std::to_string(granted) + " is missing",
+         message);
+    return false;
+  }
   return true;
 }
 
@@ -209,6 +249,7 @@ Status ReplayBoard::Impl::do_wait_until(TimeNs) {
   pose.rewind();
   operator_port.rewind();
   depth.rewind();
+  stereo.rewind();
   return tick.inputs.late ? Status::kTimeout : Status::kOk;
 }
 
@@ -243,6 +284,7 @@ Board ReplayBoard::board(TimeNs period) {
   board.pose = &impl_->pose;
   board.operator_port = &impl_->operator_port;
   board.depth_camera = &impl_->depth;
+  board.stereo_camera = &impl_->stereo;
   return board;
 }
 

@@ -29,6 +29,7 @@ inline stereo::PointConfig recommended_points() {
   config.max_range_m = 3.0;
   config.disparity_floor_px = 0.1;
   config.grey_noise = 5.0;
+  config.relief_share = 0.25;
   return config;
 }
 

@@ -1,0 +1,50 @@
+// What can be tuned about the stereo camera: when it takes a pair, how the pair is matched, how sure
+// its points are.
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/parameters.h"
+#include "core/stereo/matcher_config.h"
+
+namespace surefoot::autonomy {
+
+// Defaults are none on purpose (core/base/parameters.h); recommended values: docs/robots.md.
+struct StereoConfig {
+  bool present = false;
+  // When: as soon as the trunk is steady after a shift, and at least every period.
+  double period_s = 0;
+  double least_interval_s = 0;
+  double steady_rate_rad_s = 0;
+  double steady_speed_m_s = 0;
+  // How
+  std::uint8_t shrink = 1;
+  stereo::MatcherConfig matcher;
+  double least_valid_share = 0;
+  // How sure (core/stereo/point_cloud.h)
+  double disparity_floor_px = 0;
+  double grey_noise = 0;
+  double relief_share = 0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("period_s", self.period_s, {0.1, 60.0}, "between pairs, at most while steady");
+    visit.real("least_interval_s", self.least_interval_s, {0.1, 60.0}, "between pairs");
+    visit.real("steady_rate_rad_s", self.steady_rate_rad_s, {0.001, 10.0},
+               "the trunk turns no faster during an exposure");
+    visit.real("steady_speed_m_s", self.steady_speed_m_s, {0.001, 10.0},
+               "the trunk moves no faster during an exposure");
+    visit.integer("shrink", self.shrink, {1, 4}, "pixels of the camera per matched pixel");
+    visit.group("matcher", self.matcher);
+    visit.real("least_valid_share", self.least_valid_share, {0.0, 1.0},
+               "of the pixels that must have a disparity in range: else nothing is mapped");
+    visit.real("disparity_floor_px", self.disparity_floor_px, {0.001, 2.0},
+               "one sigma of a disparity where contrast is high");
+    visit.real("grey_noise", self.grey_noise, {0.0, 100.0},
+               "one sigma of a disparity, in pixels, times the grey levels of contrast");
+    visit.real("relief_share", self.relief_share, {0.0, 4.0},
+               "one sigma of a disparity per pixel by which the surface around it is no plane");
+  }
+};
+
+}  // namespace surefoot::autonomy
