@@ -16,6 +16,7 @@
 #include "sim_hal/sensors/sim_depth_camera_port.h"
 #include "sim_hal/sensors/sim_imu_port.h"
 #include "sim_hal/sensors/sim_pose_port.h"
+#include "sim_hal/sensors/sim_stereo_camera_port.h"
 #include "sim_hal/world/obstacle.h"
 #include "sim_hal/world/terrain.h"
 #include "sim_hal/world/terrain_index.h"
@@ -90,6 +91,9 @@ void check(const SimulatorConfig& config, const robot::RobotModel& robot) {
   if (config.depth.latency_s * robot.depth_camera.rate_Hz > SimDepthCameraPort::kQueue - 1) {
     throw SimulatorError("simulator: depth.latency_s is longer than the frame queue");
   }
+  if (robot.stereo_camera.present && !config.stereo.present) {
+    throw SimulatorError("simulator: the robot has a stereo camera, but there is no group stereo");
+  }
   if (config.tracking.latency_s * robot.tracking_camera.rate_Hz > SimPosePort::kQueue - 1) {
     throw SimulatorError("simulator: tracking.latency_s is longer than the sample queue");
   }
@@ -124,6 +128,11 @@ struct Simulator::Implementation final : hal::Clock {
         tracking(robot_model.tracking_camera, configuration.tracking, configuration.faults, seed,
                  robot.trunk_position_m(), robot.trunk_rotation()) {
     dWorldSetContactMaxCorrectingVel(ode.id(), configuration.physics.max_correcting_velocity_m_s);
+    if (robot_model.stereo_camera.present) {
+      stereo = std::make_unique<SimStereoCameraPort>(robot_model.stereo_camera,
+                                                     configuration.stereo, configuration.faults,
+                                                     index, seed);
+    }
     if (obstacle.exists()) {
       index.show(&obstacle.box());
       contacts.place_obstacle(obstacle.box());
@@ -142,7 +151,8 @@ struct Simulator::Implementation final : hal::Clock {
   void step_bodies();
   void exchange_can();
   void advance_imu();
-  void expose();
+  std::array<Capsule, 3 * robot::kLegs> leg_shapes() const;
+  void advance_cameras();
   void track_slip();
 
   SimulatorConfig config;
@@ -158,6 +168,7 @@ struct Simulator::Implementation final : hal::Clock {
   SimCanPort can;
   SimImuPort imu;
   SimDepthCameraPort camera;
+  std::unique_ptr<SimStereoCameraPort> stereo;  // null: the robot has none
   SimPosePort tracking;
   Vector3 mount_velocity_W;
   Vector3 trunk_force_N = Vector3::Zero();
@@ -192,9 +203,9 @@ void Simulator::Implementation::advance_imu() {
               to_B * robot.trunk_angular_velocity_W());
 }
 
-void Simulator::Implementation::expose() {
+std::array<Capsule, 3 * robot::kLegs> Simulator::Implementation::leg_shapes() const {
   const robot::RobotModel& model = robot.model();
-  std::array<Capsule, SimDepthCameraPort::kMaxCapsules> shapes;
+  std::array<Capsule, 3 * robot::kLegs> shapes;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     const std::size_t thigh = body_of(robot::joint_index(leg, 1));
     const std::size_t shank = body_of(robot::joint_index(leg, 2));
@@ -206,7 +217,19 @@ void Simulator::Implementation::expose() {
     shapes[3 * leg + 1] = {knee, foot, model.shank_radius_m};
     shapes[3 * leg + 2] = {foot, foot, model.foot_radius_m};
   }
-  camera.expose(now, robot.trunk_position_m(), robot.trunk_rotation(), shapes);
+  return shapes;
+}
+
+void Simulator::Implementation::advance_cameras() {
+  camera.advance(now);
+  if (camera.due(now)) {
+    camera.expose(now, robot.trunk_position_m(), robot.trunk_rotation(), leg_shapes());
+  }
+  if (stereo == nullptr) return;
+  stereo->advance(now);
+  if (stereo->triggered()) {
+    stereo->expose(now, robot.trunk_position_m(), robot.trunk_rotation(), leg_shapes());
+  }
 }
 
 void Simulator::Implementation::track_slip() {
@@ -282,8 +305,7 @@ void Simulator::Implementation::advance() {
   if (robot.model().tracking_camera.rate_Hz > 0) {
     tracking.advance(now, robot.trunk_position_m(), robot.trunk_rotation());
   }
-  camera.advance(now);
-  if (camera.due(now)) expose();
+  advance_cameras();
 }
 
 Simulator::Simulator(const robot::RobotModel& robot, const WorldSpec& world,
@@ -299,7 +321,9 @@ hal::Board Simulator::board() {
   board.clock = implementation_.get();
   board.can = &implementation_->can;
   board.imu = &implementation_->imu;
-  board.depth_camera = &implementation_->camera;
+  const bool sees_depth = implementation_->robot.model().depth_camera.rate_Hz > 0;
+  board.depth_camera = sees_depth ? &implementation_->camera : nullptr;
+  board.stereo_camera = implementation_->stereo.get();
   const bool tracks = implementation_->robot.model().tracking_camera.rate_Hz > 0;
   board.pose = tracks ? &implementation_->tracking : nullptr;
   return board;
@@ -404,6 +428,12 @@ SimulatorCounters Simulator::counters() const {
   counters.depth_random_dropouts = depth.random_dropouts;
   counters.depth_out_of_range = depth.out_of_range;
   counters.camera_exposures_lost = depth.exposures_lost;
+  if (sim.stereo != nullptr) {
+    const StereoImageCounters& stereo = sim.stereo->image_counters();
+    counters.stereo_exposures = stereo.exposures;
+    counters.stereo_exposures_lost = stereo.exposures_lost;
+    counters.stereo_rays = stereo.rays;
+  }
   counters.imu_samples_lost = sim.imu.lost();
   counters.pose_samples_lost = sim.tracking.pose_counters().lost;
   counters.pose_jumps = sim.tracking.pose_counters().jumps;

@@ -73,6 +73,9 @@ struct SimulatorCounters {
   std::uint64_t depth_random_dropouts = 0;
   std::uint64_t depth_out_of_range = 0;
   std::uint64_t camera_exposures_lost = 0;
+  std::uint64_t stereo_exposures = 0;
+  std::uint64_t stereo_exposures_lost = 0;
+  std::uint64_t stereo_rays = 0;
   std::uint64_t imu_samples_lost = 0;
   std::uint64_t pose_samples_lost = 0;
   std::uint64_t pose_jumps = 0;
@@ -88,7 +91,8 @@ class Simulator {
   Simulator(const Simulator&) = delete;
   Simulator& operator=(const Simulator&) = delete;
 
-  // clock, can, imu, depth_camera and, where the robot has one, pose are set; the rest is null.
+  // clock, can, imu and, where the robot has them, depth_camera, stereo_camera and pose are set; the
+  // rest is null.
   // clock->wait_until(t) steps the physics until now() >= t. The ports live as long as the
   // simulator.
   hal::Board board();

@@ -98,6 +98,28 @@ struct TrackingNoiseConfig {
   }
 };
 
+// The pictures of a stereo pair. The ground's pattern is made up; what is seen of it is the same
+// for both eyes but for noise and exposure.
+struct StereoImageConfig {
+  bool present = false;
+  double latency_s = 0;   // from exposure to delivery
+  double texture = 0;     // contrast of the pattern; 0: a surface without any
+  double grey_noise = 0;  // one sigma, grey levels
+  double right_gain = 1;  // brightness of the right picture
+  double right_offset = 0;
+  double dropout = 0;  // probability that a pair is lost
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("latency_s", self.latency_s, {0.0, 0.5}, "from exposure to delivery");
+    visit.real("texture", self.texture, {0.0, 2.0}, "contrast of the ground's pattern");
+    visit.real("grey_noise", self.grey_noise, {0.0, 50.0}, "one sigma, grey levels");
+    visit.real("right_gain", self.right_gain, {0.5, 2.0}, "brightness of the right picture");
+    visit.real("right_offset", self.right_offset, {-50.0, 50.0}, "grey levels added to it");
+    visit.real("dropout", self.dropout, {0.0, 1.0}, "probability that a pair is lost");
+  }
+};
+
 struct CanConfig {
   double frame_time_s = 0.00012;    // one frame on the wire; commands and replies share the bus
   double reply_loss = 0;            // probability that a reply never arrives
@@ -121,7 +143,7 @@ struct CanConfig {
 struct FaultConfig {
   std::int32_t silent_joint = -1;  // this drive stops answering and goes limp; -1: none
   double silent_from_s = 0;
-  double camera_off_from_s = 0;  // exposures in [from, until) are lost
+  double camera_off_from_s = 0;  // exposures in [from, until) are lost, of either camera
   double camera_off_until_s = 0;
   double imu_off_from_s = 0;  // samples in [from, until) are lost
   double imu_off_until_s = 0;
@@ -154,6 +176,7 @@ struct SimulatorConfig {
   ImuNoiseConfig imu;
   DepthNoiseConfig depth;
   TrackingNoiseConfig tracking;
+  StereoImageConfig stereo;  // where the robot has a stereo camera
   CanConfig can;
   FaultConfig faults;
   StartPose start;
@@ -165,6 +188,7 @@ struct SimulatorConfig {
     visit.group("imu", self.imu);
     visit.group("depth", self.depth);
     visit.group("tracking", self.tracking);
+    visit.optional("stereo", self.stereo);
     visit.group("can", self.can);
     visit.group("faults", self.faults);
   }

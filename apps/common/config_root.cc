@@ -8,6 +8,7 @@
 
 #include "apps/common/config_motions.h"
 #include "apps/common/config_reader.h"
+#include "apps/common/config_stereo.h"
 #include "apps/common/config_writer.h"
 
 namespace surefoot::apps {
@@ -251,11 +252,15 @@ Config load_config_parts(const RunRequest& request, const fs::path& folder, Conf
   }
   for (const std::string& set : request.sets) apply_override(tree, set, issues);
   load_motions(tree, folder, issues);
+  load_stereo(tree, issues);
   Config config;
   ConfigIssues read;
   ConfigReader::read(tree, config, read);
   if (read.empty()) check_motions(config.autonomy.motions, config.robot, read);
   if (read.empty()) check_gait(config.autonomy, read);
+  if (read.empty()) {
+    check_stereo(tree, config.robot, config.autonomy.stereo, config.sim.stereo.present, read);
+  }
   take_goal_from_world(config);
   read = without_absent_groups(std::move(read), request, issues);
   issues.insert(issues.end(), read.begin(), read.end());

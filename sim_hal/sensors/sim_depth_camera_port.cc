@@ -16,51 +16,7 @@ constexpr std::size_t kPatch_px = 4;
 // matching windows straddle it. In pixels of the native image.
 constexpr double kEdge_px = 1.5;
 
-// Both z-depth rays and the capsule live in C: hits at z = t because direction.z = 1.
-double cast_sphere(const Vector3& centre, double radius, const Vector3& direction) {
-  const double a = direction.squaredNorm();
-  const double b = direction.dot(centre);
-  const double c = centre.squaredNorm() - radius * radius;
-  const double discriminant = b * b - a * c;
-  if (discriminant < 0) return kNoHit;
-  const double t = (b - std::sqrt(discriminant)) / a;
-  return t > 0 ? t : kNoHit;
-}
-
-double cast_cylinder(const Capsule& capsule, const Vector3& direction) {
-  const Vector3 axis = capsule.b_m - capsule.a_m;
-  const double axis2 = axis.squaredNorm();
-  if (axis2 == 0) return kNoHit;
-  const double direction_axis = direction.dot(axis);
-  const double a_axis = capsule.a_m.dot(axis);
-  // |t d - a|^2 off the axis, times axis2.
-  const double qa = axis2 * direction.squaredNorm() - direction_axis * direction_axis;
-  const double qb = axis2 * direction.dot(capsule.a_m) - direction_axis * a_axis;
-  const double qc =
-      axis2 * (capsule.a_m.squaredNorm() - capsule.radius_m * capsule.radius_m) - a_axis * a_axis;
-  const double discriminant = qb * qb - qa * qc;
-  if (discriminant < 0 || qa <= 0) return kNoHit;
-  const double t = (qb - std::sqrt(discriminant)) / qa;
-  const double along = t * direction_axis - a_axis;
-  return t > 0 && along >= 0 && along <= axis2 ? t : kNoHit;
-}
-
-// Extent of x / z over a ball around (x, z).
-void ratio_bounds(double x, double z, double r, double& low, double& high) {
-  for (const double depth : {z - r, z + r}) {
-    low = std::min(low, (x - r) / depth);
-    high = std::max(high, (x + r) / depth);
-  }
-}
-
 }  // namespace
-
-double cast_capsule(const Capsule& capsule, const Vector3& direction) {
-  const double side = cast_cylinder(capsule, direction);
-  const double a = cast_sphere(capsule.a_m, capsule.radius_m, direction);
-  const double b = cast_sphere(capsule.b_m, capsule.radius_m, direction);
-  return std::min(side, std::min(a, b));
-}
 
 SimDepthCameraPort::SimDepthCameraPort(const robot::DepthCameraSpecification& specification,
                                        const DepthNoiseConfig& noise, const FaultConfig& faults,
@@ -98,37 +54,24 @@ bool SimDepthCameraPort::due(TimeNs now) const {
   return now.seconds() * specification_.rate_Hz >= static_cast<double>(next_) - 1e-6;
 }
 
-// Conservative: the pixels of the box around both end spheres.
+// The pixels that the capsule may cover.
 SimDepthCameraPort::Window SimDepthCameraPort::window_of(const Capsule& capsule) const {
-  Window window;
-  window.capsule = capsule;
-  const double r = capsule.radius_m;
-  const double nearest = std::min(capsule.a_m.z(), capsule.b_m.z()) - r;
-  if (std::max(capsule.a_m.z(), capsule.b_m.z()) + r < 0.01) return window;  // behind
-  window.u1 = intrinsics_.width_px - 1;
-  window.v1 = intrinsics_.height_px - 1;
-  if (nearest < 0.01) return window;  // reaches the camera's plane: the whole image
-  double u_low = kNoHit;
-  double u_high = -kNoHit;
-  double v_low = kNoHit;
-  double v_high = -kNoHit;
-  for (const Vector3& p : {capsule.a_m, capsule.b_m}) {
-    ratio_bounds(p.x(), p.z(), r, u_low, u_high);
-    ratio_bounds(p.y(), p.z(), r, v_low, v_high);
-  }
+  const CapsuleBounds bounds = bounds_of(capsule);
   const auto pixel = [](double ratio, double f, double c) {
     return std::clamp(ratio * f + c, -1e6, 1e6);
   };
   const double fx = intrinsics_.fx_px;
   const double fy = intrinsics_.fy_px;
+  Window window;
+  window.capsule = capsule;
   window.u0 =
-      std::max(window.u0, static_cast<int>(std::floor(pixel(u_low, fx, intrinsics_.cx_px))));
-  window.u1 =
-      std::min(window.u1, static_cast<int>(std::ceil(pixel(u_high, fx, intrinsics_.cx_px))));
+      std::max(0, static_cast<int>(std::floor(pixel(bounds.x_low, fx, intrinsics_.cx_px))));
+  window.u1 = std::min(intrinsics_.width_px - 1,
+                       static_cast<int>(std::ceil(pixel(bounds.x_high, fx, intrinsics_.cx_px))));
   window.v0 =
-      std::max(window.v0, static_cast<int>(std::floor(pixel(v_low, fy, intrinsics_.cy_px))));
-  window.v1 =
-      std::min(window.v1, static_cast<int>(std::ceil(pixel(v_high, fy, intrinsics_.cy_px))));
+      std::max(0, static_cast<int>(std::floor(pixel(bounds.y_low, fy, intrinsics_.cy_px))));
+  window.v1 = std::min(intrinsics_.height_px - 1,
+                       static_cast<int>(std::ceil(pixel(bounds.y_high, fy, intrinsics_.cy_px))));
   return window;
 }
 

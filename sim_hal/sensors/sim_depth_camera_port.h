@@ -14,20 +14,11 @@
 #include "core/math/linear.h"
 #include "core/robot/robot_model.h"
 #include "hal/api/depth_camera_port.h"
+#include "sim_hal/sensors/capsule.h"
 #include "sim_hal/simulator_config.h"
 #include "sim_hal/world/terrain_index.h"
 
 namespace surefoot::sim {
-
-// A sphere swept from a to b; a == b is a sphere.
-struct Capsule {
-  Vector3 a_m = Vector3::Zero();
-  Vector3 b_m = Vector3::Zero();
-  double radius_m = 0;
-};
-
-// Smallest t > 0 at which t * direction (from the origin, outside the capsule) is on its surface.
-double cast_capsule(const Capsule& capsule, const Vector3& direction);
 
 struct DepthCounters {
   std::uint64_t rays = 0;
