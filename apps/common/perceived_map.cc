@@ -94,6 +94,7 @@ MapError map_error(const mapping::Mapper& mapper, const Alignment& O_in_W, const
   if (!mapper.configured()) return error;
   const double size = mapper.cell_size_m();
   double sum = 0;
+  std::vector<double> sizes;
   for (const auto& [ix, iy] : corridor(log, O_in_W, size, half_width_m)) {
     ++error.cells;
     const mapping::MapCell* cell = mapper.map().find({ix, iy});
@@ -102,7 +103,13 @@ MapError map_error(const mapping::Mapper& mapper, const Alignment& O_in_W, const
                                     static_cast<double>(cell->height_m)});
     const double off = p[2] - ground(p[0], p[1]);
     sum += off * off;
+    sizes.push_back(std::fabs(off));
     ++error.measured;
+  }
+  if (!sizes.empty()) {
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    error.median_m = *middle;
   }
   if (error.measured > 0) error.rmse_m = std::sqrt(sum / static_cast<double>(error.measured));
   if (error.cells > 0) {

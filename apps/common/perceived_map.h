@@ -31,6 +31,7 @@ struct ClassGrid {
 
 struct MapError {
   double rmse_m = 0;          // of the measured cells; 0 where there is none
+  double median_m = 0;        // of the measured cells' errors, signs left out
   double known_fraction = 0;  // measured cells of all cells in the corridor
   std::size_t measured = 0;
   std::size_t cells = 0;

@@ -179,6 +179,8 @@ class Run {
     facts_.samples_dropped = log_->dropped();
     facts_.counters = executive.counters();
     facts_.map_frames_bounded = stack_.autonomy().map().counters().frames_bounded;
+    facts_.stereo = executive.outputs().telemetry.stereo;
+    facts_.stereo.valid_share = stack_.autonomy().stereo().mean_valid_share();
     facts_.static_walk = stack_.autonomy().static_walk().counters();
     facts_.tracking = stack_.autonomy().estimator().drift().counters();
   }

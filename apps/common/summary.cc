@@ -30,6 +30,8 @@ Json counters_json(const RunFacts& facts) {
           {"pose_jumps", facts.tracking.jumps},
           {"pose_relocations", facts.tracking.relocations},
           {"depth_invalid", facts.counters.depth_invalid},
+          {"stereo_invalid", facts.counters.stereo_invalid},
+          {"triggers_refused", facts.counters.triggers_refused},
           {"sends_refused", facts.counters.sends_refused},
           {"records_refused", facts.counters.records_refused},
           {"samples_dropped", facts.samples_dropped},
@@ -95,7 +97,14 @@ Json summary_json(const RunFacts& facts) {
   json["estimate"] = {{"end_error_m", m.estimate.end_error_m},
                       {"drift_percent", m.estimate.drift_percent},
                       {"rms_error_m", m.estimate.rms_error_m}};
-  json["map"] = {{"rmse_m", facts.map.rmse_m}, {"known_fraction", facts.map.known_fraction}};
+  json["map"] = {{"rmse_m", facts.map.rmse_m},
+                 {"median_m", facts.map.median_m},
+                 {"known_fraction", facts.map.known_fraction}};
+  json["stereo"] = {{"triggers", facts.stereo.triggers},
+                    {"pairs_matched", facts.stereo.pairs_matched},
+                    {"pairs_refused", facts.stereo.pairs_refused},
+                    {"pairs_unusable", facts.stereo.pairs_unusable},
+                    {"valid_share", facts.stereo.valid_share}};
   json["memory"] = {{"static_bytes", facts.static_bytes},
                     {"heap_calls_after_start", facts.heap_calls},
                     {"page_faults_after_start", facts.page_faults}};

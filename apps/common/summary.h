@@ -40,6 +40,7 @@ struct RunFacts {
   std::uint64_t map_frames_bounded = 0;
   estimation::TrackingCounters tracking;
   control::StaticWalkCounters static_walk;
+  autonomy::StereoTelemetry stereo;  // valid_share: the mean over all pairs
 };
 
 std::string hex16(std::uint64_t value);

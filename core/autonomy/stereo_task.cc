@@ -66,6 +66,7 @@ Status StereoTask::reset(const robot::StereoCameraSpecification& camera,
   enabled_ = false;
   counters_ = StereoCounters{};
   valid_share_ = 0;
+  valid_share_sum_ = 0;
   fresh_ = false;
   working_ = 0;
   if (!camera.present) return Status::kOk;
@@ -163,9 +164,15 @@ void StereoTask::fill(StereoPicture& picture) {
 void StereoTask::publish() {
   ++counters_.pairs_matched;
   valid_share_ = working_share_;
+  valid_share_sum_ += working_share_;
   fresh_ = pictures_[working_].usable;
   if (!fresh_) ++counters_.pairs_unusable;
   working_ = 1 - working_;
+}
+
+double StereoTask::mean_valid_share() const {
+  const auto pairs = static_cast<double>(counters_.pairs_matched);
+  return pairs > 0 ? valid_share_sum_ / pairs : 0.0;
 }
 
 const StereoPicture* StereoTask::take() {

@@ -88,6 +88,7 @@ class StereoTask {
 
   const StereoCounters& counters() const { return counters_; }
   double valid_share() const { return valid_share_; }
+  double mean_valid_share() const;
 
  private:
   void fill(StereoPicture& picture);
@@ -109,6 +110,7 @@ class StereoTask {
   double working_share_ = 0;
   bool fresh_ = false;
   double valid_share_ = 0;
+  double valid_share_sum_ = 0;
   StereoCounters counters_;
 };
 

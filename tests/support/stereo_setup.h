@@ -27,9 +27,9 @@ inline stereo::PointConfig recommended_points() {
   config.stride = 1;
   config.min_range_m = 0.1;
   config.max_range_m = 3.0;
-  config.disparity_floor_px = 0.1;
-  config.grey_noise = 5.0;
-  config.relief_share = 0.25;
+  config.disparity_floor_px = 0.08;
+  config.grey_noise = 4.5;
+  config.relief_share = 0.15;
   return config;
 }
 
