@@ -258,7 +258,8 @@ Config load_config_parts(const RunRequest& request, const fs::path& folder, Conf
   ConfigReader::read(tree, config, read);
   if (read.empty()) check_motions(config.autonomy.motions, config.robot, read);
   if (read.empty()) check_gait(config.autonomy, read);
-  if (read.empty()) {
+  // Also of a robot's file alone.
+  if (!request.robot.empty() && std::all_of(read.begin(), read.end(), is_missing_group)) {
     check_stereo(tree, config.robot, config.autonomy.stereo, config.sim.stereo.present, read);
   }
   take_goal_from_world(config);

@@ -103,6 +103,7 @@ void fill(std::uint32_t number, autonomy::TickInputs& inputs) {
   inputs.operator_command.sequence = number;
   inputs.operator_command.stamp = inputs.stamp;
   inputs.depth_fresh = true;
+  inputs.stereo_fresh = true;
 }
 
 template <class Fields>
@@ -121,12 +122,18 @@ void write_run(const std::string& path) {
   ASSERT_EQ(writer.write(hal::RecordChannel::kConfiguration, {}, configuration), Status::kOk);
   auto depth = std::make_unique<hal::DepthFrame>();
   depth->intrinsics = {.width_px = 4, .height_px = 3, .fx_px = 5, .fy_px = 5};
+  auto stereo = std::make_unique<hal::StereoFrame>();
+  stereo->width_px = 20;
+  stereo->height_px = 16;
   for (std::uint32_t number = 0; number < kTicks; ++number) {
     auto tick = std::make_unique<runtime::TickRecord>();
     fill(number, tick->inputs);
     depth->sequence = number;
     depth->stamp = tick->inputs.stamp;
     write(writer, hal::RecordChannel::kDepth, depth->stamp, *depth);
+    stereo->sequence = number;
+    stereo->stamp = tick->inputs.stamp;
+    write(writer, hal::RecordChannel::kStereo, stereo->stamp, *stereo);
     write(writer, hal::RecordChannel::kTick, tick->inputs.stamp, *tick);
   }
   ASSERT_EQ(writer.close(), Status::kOk) << writer.error();
@@ -201,6 +208,21 @@ TEST(Replay, PosePortKeepsTheRules) {
 TEST(Replay, DepthCameraPortKeepsTheRules) {
   ReplayBench<DepthBench> bench(&hal::Board::depth_camera, 1);
   EXPECT_EQ(joined(sensor_violations<DepthBench>(bench)), "");
+}
+
+// What comes of a trigger is in the record, at its tick.
+class ReplayStereoBench final : public StereoBench {
+ public:
+  hal::StereoCameraPort& port() override { return *recording_.board().stereo_camera; }
+  std::size_t arrive(std::size_t) override { return recording_.next_tick() ? 1 : 0; }
+
+ private:
+  Recording recording_;
+};
+
+TEST(Replay, StereoCameraPortKeepsTheRules) {
+  ReplayStereoBench bench;
+  EXPECT_EQ(joined(sensor_violations<StereoBench>(bench)), "");
 }
 
 TEST(Replay, OperatorPortKeepsTheRules) {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 
-#include "apps/common/config_node.h"
-#include "apps/common/config_reader.h"
+#include "apps/common/config_root.h"
 #include "core/actuation/motor_protocol.h"
+#include "sim_hal/sensors/sim_stereo_camera_port.h"
 #include "sim_hal/simulator.h"
 #include "tests/conformance/can_port_rules.h"
 #include "tests/conformance/clock_rules.h"
@@ -15,21 +15,21 @@
 namespace surefoot::conformance {
 namespace {
 
-robot::RobotModel mini_cheetah() {
+apps::Config robot_named(const char* name) {
   apps::ConfigIssues issues;
-  const apps::ConfigNode tree =
-      apps::read_yaml_file(SUREFOOT_SOURCE_DIR "/config/robots/mini_cheetah.yaml", issues);
-  robot::RobotModel model;
-  const apps::ConfigNode* const node = tree.find("robot");
-  if (node != nullptr) apps::ConfigReader::read(*node, model, issues);
+  apps::RunRequest request;
+  request.robot = name;
+  const apps::Config config =
+      apps::load_config_parts(request, SUREFOOT_SOURCE_DIR "/config", issues);
   EXPECT_EQ(apps::to_string(issues), "");
-  return model;
+  return config;
 }
 
 // The trunk on a stand: the robot stays where it is while the suites let time pass.
 class Stand {
  public:
-  Stand() : simulator_(mini_cheetah(), {}, config(), 1), board_(simulator_.board()) {}
+  explicit Stand(const char* robot = "mini_cheetah")
+      : simulator_(robot_named(robot).robot, {}, config(), 1), board_(simulator_.board()) {}
 
   const hal::Board& board() const { return board_; }
   void pass(TimeNs time) { EXPECT_TRUE(ok(board_.clock->wait_until(board_.clock->now() + time))); }
@@ -39,6 +39,8 @@ class Stand {
     sim::SimulatorConfig config;
     config.start.drop_height_m = 0.3;
     config.start.trunk_fixed = true;
+    config.stereo.present = true;
+    config.stereo.latency_s = 0.004;
     return config;
   }
   sim::Simulator simulator_;
@@ -112,6 +114,28 @@ TEST(Simulator, PosePortKeepsTheRules) {
 TEST(Simulator, DepthCameraPortKeepsTheRules) {
   SimSensorBench<DepthBench> bench(&hal::Board::depth_camera, milliseconds(34), 8);
   EXPECT_EQ(joined(sensor_violations<DepthBench>(bench)), "");
+}
+
+class SimStereoBench final : public StereoBench {
+ public:
+  hal::StereoCameraPort& port() override { return *stand_.board().stereo_camera; }
+  std::size_t arrive(std::size_t count) override {
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_TRUE(ok(port().trigger()));
+      stand_.pass(milliseconds(2));
+    }
+    stand_.pass(milliseconds(6));
+    return count;
+  }
+  std::size_t capacity() const override { return sim::SimStereoCameraPort::kQueue; }
+
+ private:
+  Stand stand_{"littledog"};
+};
+
+TEST(Simulator, StereoCameraPortKeepsTheRules) {
+  SimStereoBench bench;
+  EXPECT_EQ(joined(sensor_violations<StereoBench>(bench)), "");
 }
 
 TEST(Simulator, ClockKeepsTheRules) {

@@ -1,4 +1,5 @@
-// A LittleDog crosses low blocks one leg at a time: the whole path with another robot's file.
+// A LittleDog crosses low blocks one leg at a time and sees them through its stereo pair only: the
+// whole path with another robot's file.
 #include <gtest/gtest.h>
 
 #include "tests/integration/program.h"
@@ -19,6 +20,10 @@ TEST(LittleDog, CrossesLowBlocksOneLegAtATimeAndReplays) {
   EXPECT_EQ(summary["falls"], 0);
   EXPECT_GE(summary["mean_speed_m_s"].get<double>(), 0.04);
   EXPECT_GE(summary["counters"]["static_steps"], 30);
+  EXPECT_GE(summary["stereo"]["pairs_matched"], 30);
+  EXPECT_LE(summary["stereo"]["pairs_unusable"], 2);
+  EXPECT_GE(summary["stereo"]["valid_share"].get<double>(), 0.6);
+  EXPECT_LE(summary["map"]["median_m"].get<double>(), 0.003);
   EXPECT_EQ(summary["memory"]["heap_calls_after_start"], 0);
   EXPECT_EQ(summary["memory"]["page_faults_after_start"], 0);
   const ProgramResult replay = run_program("surefoot replay " + scratch.text("run/record.mcap"));

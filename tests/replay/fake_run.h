@@ -31,6 +31,9 @@ struct FakeAutonomy {
     for (const auto& sample : inputs.imu) a.position_m += 1e-3 * sample.specific_force_I_m_s2[0];
     for (const auto& sample : inputs.pose) a.position_m += 1e-4 * sample.p_ST_m[1];
     if (inputs.operator_fresh) a.position_m += inputs.operator_command.forward_m_s;
+    if (inputs.stereo_fresh) {
+      a.seen = a.seen * 31 + inputs.stereo->left[3] + inputs.stereo->right[5];
+    }
     if (inputs.late) a.seen += 7;
     return true;
   }
@@ -47,6 +50,7 @@ struct FakeAutonomy {
       const Status status = outputs.can.push_back(frame);
       SUREFOOT_ASSERT(ok(status));
     }
+    outputs.stereo_trigger = a.tick % 20 == 3;
     outputs.telemetry.p_OB_m[0] = a.position_m;
     outputs.telemetry.replies_missed = a.published;
     outputs.telemetry.legs[2].foot_O_m[1] = a.tick == a.tamper_tick ? -0.125 : 0.25;
@@ -106,6 +110,7 @@ class FakeInputs {
       board.operator_port.command.forward_m_s = random_.uniform();
     }
     if (tick % 5 == 2) feed_depth(board);
+    if (tick % 20 == 12) feed_stereo(board);
   }
 
  private:
@@ -116,6 +121,17 @@ class FakeInputs {
       board.depth.frame.depth[i] = static_cast<std::uint16_t>(500 + random_.below(2000));
     }
     board.depth.waiting = 1;
+  }
+
+  void feed_stereo(FakeBoard& board) {
+    hal::StereoFrame& frame = board.stereo.frame;
+    frame.width_px = 24;
+    frame.height_px = 16;
+    for (std::size_t i = 0; i < frame.pixel_count(); ++i) {
+      frame.left[i] = static_cast<std::uint8_t>(random_.below(256));
+      frame.right[i] = static_cast<std::uint8_t>(random_.below(256));
+    }
+    board.stereo.waiting = 1;
   }
 
   Random random_;

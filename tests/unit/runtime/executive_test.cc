@@ -365,6 +365,53 @@ TEST_F(ExecutiveTest, DepthLargerThanTheCapacityIsIgnoredAndCounted) {
   EXPECT_EQ(executive_->counters().depth_invalid, 1u);
 }
 
+TEST_F(ExecutiveTest, RecordsTheStereoPairBeforeItsTickAndHashesIt) {
+  std::vector<std::uint64_t> hashes;
+  for (const std::uint8_t grey : {std::uint8_t{7}, std::uint8_t{8}}) {
+    board_.clock = {};
+    board_.record.messages.clear();
+    board_.stereo.frame.width_px = 3;
+    board_.stereo.frame.height_px = 2;
+    board_.stereo.frame.right[5] = grey;
+    board_.stereo.waiting = 1;
+    start({control_.row(1, 0, 0)});
+    tick();
+    EXPECT_TRUE(executive_->inputs().stereo_fresh);
+    ASSERT_EQ(board_.record.messages.size(), 2u);
+    EXPECT_EQ(board_.record.messages[0].channel, hal::RecordChannel::kStereo);
+    auto pair = std::make_unique<hal::StereoFrame>();
+    ASSERT_EQ(decode_stereo(board_.record.messages[0].bytes, *pair), Status::kOk);
+    EXPECT_EQ(pair->right[5], grey);
+    hashes.push_back(executive_->hash());
+    tick();
+    EXPECT_FALSE(executive_->inputs().stereo_fresh);
+    EXPECT_EQ(executive_->inputs().stereo, nullptr);
+  }
+  EXPECT_NE(hashes[0], hashes[1]);
+}
+
+TEST_F(ExecutiveTest, APairLargerThanTheCapacityIsIgnoredAndCounted) {
+  board_.stereo.frame.width_px = 2000;
+  board_.stereo.frame.height_px = 2000;
+  board_.stereo.waiting = 1;
+  start({control_.row(1, 0, 0)});
+  tick();
+  EXPECT_FALSE(executive_->inputs().stereo_fresh);
+  EXPECT_EQ(executive_->counters().stereo_invalid, 1u);
+}
+
+TEST_F(ExecutiveTest, TriggersTheStereoCameraAtCommitAndOnlyThen) {
+  Task trigger = control_.row(5, 2, 0);
+  trigger.publish = [](void*, autonomy::TickOutputs& outputs) { outputs.stereo_trigger = true; };
+  start({trigger});
+  for (int t = 0; t < 10; ++t) tick();
+  EXPECT_EQ(board_.stereo.triggers, 2u);
+  EXPECT_EQ(executive_->counters().triggers_refused, 0u);
+  board_.stereo.refuse = true;
+  for (int t = 0; t < 5; ++t) tick();
+  EXPECT_EQ(executive_->counters().triggers_refused, 1u);
+}
+
 TEST_F(ExecutiveTest, ARefusingRecordIsCountedAndChangesNoHash) {
   start({control_.row(1, 0, 0)});
   tick();

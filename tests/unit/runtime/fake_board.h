@@ -121,6 +121,27 @@ class FakeDepth final : public hal::DepthCameraPort {
   hal::SensorCounters do_counters() const override { return {}; }
 };
 
+class FakeStereo final : public hal::StereoCameraPort {
+ public:
+  std::size_t waiting = 0;
+  std::size_t triggers = 0;
+  bool refuse = false;
+  hal::StereoFrame frame;
+
+ private:
+  Status do_trigger() override {
+    ++triggers;
+    return refuse ? Status::kUnavailable : Status::kOk;
+  }
+  Status do_receive(hal::StereoFrame& out) override {
+    if (waiting == 0) return Status::kUnavailable;
+    --waiting;
+    out = frame;
+    return Status::kOk;
+  }
+  hal::SensorCounters do_counters() const override { return {}; }
+};
+
 // Keeps every message in memory.
 class FakeRecord final : public hal::RecordSink {
  public:
@@ -152,6 +173,7 @@ struct FakeBoard {
   FakePose pose;
   FakeOperator operator_port;
   FakeDepth depth;
+  FakeStereo stereo;
   FakeRecord record;
 
   hal::Board board() {
@@ -163,6 +185,7 @@ struct FakeBoard {
     board.pose = &pose;
     board.operator_port = &operator_port;
     board.depth_camera = &depth;
+    board.stereo_camera = &stereo;
     board.record = &record;
     return board;
   }

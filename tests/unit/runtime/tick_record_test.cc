@@ -77,6 +77,34 @@ TEST(TickRecord, DepthFastPathWritesCanonicalBytes) {
   EXPECT_EQ(decode_depth(std::span(fast).first(size - 1), *decoded), Status::kCorrupt);
 }
 
+TEST(TickRecord, StereoFastPathWritesCanonicalBytes) {
+  auto frame = std::make_unique<hal::StereoFrame>();
+  frame->stamp = milliseconds(78);
+  frame->sequence = 10;
+  frame->width_px = 1024;
+  frame->height_px = 768;
+  for (std::size_t i = 0; i < frame->left.size(); ++i) {
+    frame->left[i] = static_cast<std::uint8_t>(i * 7919);
+    frame->right[i] = static_cast<std::uint8_t>(i * 104729);
+  }
+  std::vector<std::uint8_t> canonical(kMaxStereoBytes);
+  FieldWriter writer(canonical);
+  writer.members(*frame);
+  ASSERT_EQ(writer.status(), Status::kOk);
+  std::vector<std::uint8_t> fast(kMaxStereoBytes);
+  std::size_t size = 0;
+  ASSERT_EQ(encode_stereo(*frame, fast, size), Status::kOk);
+  EXPECT_EQ(size, writer.size());
+  EXPECT_EQ(fast, canonical);
+  auto decoded = std::make_unique<hal::StereoFrame>();
+  ASSERT_EQ(decode_stereo(std::span(fast).first(size), *decoded), Status::kOk);
+  EXPECT_EQ(decoded->left, frame->left);
+  EXPECT_EQ(decoded->right, frame->right);
+  EXPECT_EQ(decode_stereo(std::span(fast).first(size - 1), *decoded), Status::kCorrupt);
+  frame->height_px = 769;
+  EXPECT_EQ(encode_stereo(*frame, fast, size), Status::kInvalid);
+}
+
 TEST(TickRecord, ImpossibleDepthSizesAreRefused) {
   auto frame = std::make_unique<hal::DepthFrame>();
   std::vector<std::uint8_t> bytes(kMaxDepthBytes);
