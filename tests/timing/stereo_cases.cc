@@ -1,5 +1,6 @@
 // Stereo: one pair of the reference size. The matcher's work does not depend on what it sees but
 // for the speckle filter, which has most to join where everything is one surface.
+#include "core/autonomy/stereo_task.h"
 #include "core/base/assert.h"
 #include "core/base/random.h"
 #include "core/stereo/matcher.h"
@@ -14,6 +15,7 @@ namespace {
 constexpr std::uint16_t kWidth_px = 320;
 constexpr std::uint16_t kHeight_px = 240;
 constexpr int kDisparity_px = 20;
+constexpr int kNear_px = 40;  // within LittleDog's range
 
 class Stereo : public WorkCase {
  public:
@@ -99,6 +101,42 @@ class StereoRest final : public Stereo {
   stereo::PointCloud cloud_;
 };
 
+// The whole stereo task of the robot that has one: 320 x 240 pixels, 112 disparities.
+class StereoTaskCase final : public WorkCase {
+ public:
+  bool prepare(std::size_t round) override {
+    if (round > 0) return false;
+    const apps::RunRequest request{"littledog", "flat", "cross", "sim", 1, {}};
+    apps::ConfigIssues issues;
+    const apps::Config config =
+        apps::load_config(request, SUREFOOT_SOURCE_DIR "/config", issues);
+    SUREFOOT_ASSERT(issues.empty());
+    SUREFOOT_ASSERT(ok(task_.reset(config.robot.stereo_camera, config.autonomy.stereo)));
+    pair_.width_px = kWidth_px;
+    pair_.height_px = kHeight_px;
+    // Columns of a random pattern: what distortion and turn move from row to row still matches.
+    Random random(1);
+    for (std::size_t u = 0; u < kWidth_px; ++u) {
+      const auto grey = static_cast<std::uint8_t>(random.below(256));
+      for (std::size_t v = 0; v < kHeight_px; ++v) {
+        pair_.left[v * kWidth_px + u] = grey;
+        if (u >= kNear_px) pair_.right[v * kWidth_px + u - kNear_px] = grey;
+      }
+    }
+    SUREFOOT_ASSERT(task_.release(pair_));
+    return true;
+  }
+  void run() override {
+    task_.run();
+    task_.publish();
+  }
+  bool did_the_work() override { return task_.valid_share() > 0.5; }
+
+ private:
+  autonomy::StereoTask task_;
+  hal::StereoFrame pair_;
+};
+
 template <class Case>
 std::unique_ptr<WorkCase> make() {
   return std::make_unique<Case>();
@@ -109,6 +147,7 @@ std::unique_ptr<WorkCase> make() {
 const WorkEntry kStereoCases[] = {
     {"stereo_match", "matching, 320 x 240 pixels, 64 disparities, all matched", make<StereoMatch>},
     {"stereo_rest", "rectification and points of such a pair", make<StereoRest>},
+    {"stereo_task", "the stereo task: LittleDog's pair, 112 disparities", make<StereoTaskCase>},
     {nullptr, nullptr, nullptr}};
 
 }  // namespace surefoot::timing
