@@ -129,9 +129,8 @@ struct Simulator::Implementation final : hal::Clock {
                  robot.trunk_position_m(), robot.trunk_rotation()) {
     dWorldSetContactMaxCorrectingVel(ode.id(), configuration.physics.max_correcting_velocity_m_s);
     if (robot_model.stereo_camera.present) {
-      stereo = std::make_unique<SimStereoCameraPort>(robot_model.stereo_camera,
-                                                     configuration.stereo, configuration.faults,
-                                                     index, seed);
+      stereo = std::make_unique<SimStereoCameraPort>(
+          robot_model.stereo_camera, configuration.stereo, configuration.faults, index, seed);
     }
     if (obstacle.exists()) {
       index.show(&obstacle.box());

@@ -91,8 +91,8 @@ class Simulator {
   Simulator(const Simulator&) = delete;
   Simulator& operator=(const Simulator&) = delete;
 
-  // clock, can, imu and, where the robot has them, depth_camera, stereo_camera and pose are set; the
-  // rest is null.
+  // clock, can, imu and, where the robot has them, depth_camera, stereo_camera and pose are set;
+  // the rest is null.
   // clock->wait_until(t) steps the physics until now() >= t. The ports live as long as the
   // simulator.
   hal::Board board();

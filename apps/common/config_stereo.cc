@@ -72,10 +72,10 @@ ConfigNode* matrix_data(ConfigNode& file, const char* key, std::int64_t& count,
   count = *rows * *columns;
   if (*rows < 1 || *columns < 1 || *rows > 100 || *columns > 100 ||
       data->children.size() != static_cast<std::size_t>(count)) {
-    report(*data, key,
-           fmt::format("wrong size: {} numbers for {} x {}", data->children.size(), *rows,
-                       *columns),
-           issues);
+    report(
+        *data, key,
+        fmt::format("wrong size: {} numbers for {} x {}", data->children.size(), *rows, *columns),
+        issues);
     return nullptr;
   }
   return data;
@@ -86,8 +86,7 @@ void take_matrix(ConfigNode& file, const MatrixForm& form, ConfigIssues& issues)
   ConfigNode* data = matrix_data(file, form.key, count, issues);
   ConfigNode* matrix = file.find(form.key);
   if (matrix == nullptr) return;
-  if (data != nullptr &&
-      !fits(form, *whole(matrix->find("rows")), *whole(matrix->find("cols")))) {
+  if (data != nullptr && !fits(form, *whole(matrix->find("rows")), *whole(matrix->find("cols")))) {
     report(*matrix, form.key,
            fmt::format("wrong size: {} x {}, expected {} x {}", matrix->find("rows")->text,
                        matrix->find("cols")->text, form.rows, form.columns),
@@ -175,8 +174,7 @@ struct CalibrationCheck {
             "no baseline: the cameras are less than 1 mm apart");
     if (issues.size() != before) return;
     stereo::RectifiedPair pair;
-    require(stereo::rectify(calibration, c.width_px, c.height_px, 0.0, pair) !=
-                Status::kOutOfRange,
+    require(stereo::rectify(calibration, c.width_px, c.height_px, 0.0, pair) != Status::kOutOfRange,
             "T", "the right camera is not to the right of the left one: swapped?");
   }
 };
@@ -190,8 +188,8 @@ void load_stereo(ConfigNode& tree, ConfigIssues& issues) {
   const ConfigPlace place = node->place;
   const ConfigNode* robot = tree.find("robot");
   const fs::path folder = fs::path(robot->place.source).parent_path();
-  const fs::path file = fs::path(node->text).is_absolute() ? fs::path(node->text)
-                                                           : folder / node->text;
+  const fs::path file =
+      fs::path(node->text).is_absolute() ? fs::path(node->text) : folder / node->text;
   std::error_code error;
   if (node->text.empty() || !fs::is_regular_file(file, error)) {
     issues.push_back({place, kKey,
@@ -222,8 +220,8 @@ void check_stereo(const ConfigNode& tree, const robot::RobotModel& model,
   if (!camera.present) return;
   if (!simulated) issues.push_back({place, "sim.stereo", "missing; the robot has a stereo camera"});
   if (model.depth_camera.rate_Hz > 0) {
-    issues.push_back({place, "robot.depth_camera.rate_Hz",
-                      "not 0, but the map is made from the stereo camera"});
+    issues.push_back(
+        {place, "robot.depth_camera.rate_Hz", "not 0, but the map is made from the stereo camera"});
   }
   const std::size_t before = issues.size();
   CalibrationCheck{tree, issues}.run(camera.calibration);

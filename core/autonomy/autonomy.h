@@ -107,7 +107,7 @@ class Autonomy {
   Mission mission_;
   control::StandUp stand_up_;
   control::Recovery recovery_;
-  control::Locomotion locomotion_;    // one of these two walks, as the robot's file says
+  control::Locomotion locomotion_;  // one of these two walks, as the robot's file says
   control::StaticWalk static_walk_;
   JumpPilot jump_pilot_;
   MpcTask mpc_;

@@ -144,7 +144,7 @@ struct AutonomyConfig {
   motions::JumpConfig jump;
   JumpPilotConfig jump_pilot;
   motions::MotionLibrary motions;  // none where the mission does not jump
-  StereoConfig stereo;               // where the robot has a stereo camera
+  StereoConfig stereo;             // where the robot has a stereo camera
   MissionConfig mission;
 
   template <class Self, class Visitor>

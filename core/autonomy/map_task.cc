@@ -125,8 +125,8 @@ mapping::SelfModel MapTask::self_model() const {
 void MapTask::run() {
   const mapping::SelfModel self = self_model();
   mapping::IntegrationReport report;
-  const Status status = mapper_.integrate(frame_, self.X_OB * X_BC_, self, &report,
-                                           has_noise_ ? &noise_ : nullptr);
+  const Status status =
+      mapper_.integrate(frame_, self.X_OB * X_BC_, self, &report, has_noise_ ? &noise_ : nullptr);
   if (ok(status)) {
     ++counters_.frames_integrated;
     if (report.rows_put_off + report.rays_put_off > 0) ++counters_.frames_bounded;

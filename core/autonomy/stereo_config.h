@@ -1,5 +1,5 @@
-// What can be tuned about the stereo camera: when it takes a pair, how the pair is matched, how sure
-// its points are.
+// What can be tuned about the stereo camera: when it takes a pair, how the pair is matched, how
+// sure its points are.
 #pragma once
 
 #include <cstdint>

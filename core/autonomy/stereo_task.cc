@@ -131,9 +131,9 @@ void StereoTask::fill(StereoPicture& picture) {
   const std::uint16_t width = static_cast<std::uint16_t>(pair.width_px - plan_.margin_px);
   picture.depth.stamp = pair_.stamp;
   picture.depth.sequence = pair_.sequence;
-  picture.depth.intrinsics = {width,         pair.height_px,
-                              pair.focal_px, pair.focal_px,
-                              pair.cx_px - plan_.margin_px, pair.cy_px};
+  picture.depth.intrinsics = {
+      width,     pair.height_px, pair.focal_px, pair.focal_px, pair.cx_px - plan_.margin_px,
+      pair.cy_px};
   picture.depth.depth_unit_m = static_cast<float>(depth_unit_m_);
   const double unit_m = static_cast<double>(picture.depth.depth_unit_m);
   const double numerator = pair.focal_px * pair.baseline_m * stereo::kSubpixels;

@@ -1,6 +1,6 @@
-// The stereo task: slow, released by a pair. Rectifies, matches and makes a picture of depth with the
-// noise of every pixel, which the mapping task then takes as it takes a depth camera's frame. Also
-// decides when the camera exposes.
+// The stereo task: slow, released by a pair. Rectifies, matches and makes a picture of depth with
+// the noise of every pixel, which the mapping task then takes as it takes a depth camera's frame.
+// Also decides when the camera exposes.
 //
 // Memory: sizeof(StereoTask) 24 MB, for pictures up to the port's capacity. Nothing allocates.
 #pragma once

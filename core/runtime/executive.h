@@ -19,12 +19,12 @@
 // Hash chain: h[t] = Fnv64(h[t-1], canonical bytes of TickInputs, of the depth frame and of the
 // stereo pair where fresh, of TickOutputs), h[-1] = 0. Execution times never enter it.
 //
-// TickOutputs: the list of CAN frames is emptied and the trigger cleared before each tick; telemetry
-// keeps its values until a task writes them again.
+// TickOutputs: the list of CAN frames is emptied and the trigger cleared before each tick;
+// telemetry keeps its values until a task writes them again.
 //
-// Fixed memory (about 4.4 MB, most of it one depth frame, one stereo pair and their bytes); no heap;
-// the object belongs into static storage. Cost of a tick without tasks: O(inputs + outputs) bytes,
-// plus one pass over the frame or pair when there is one.
+// Fixed memory (about 4.5 MB, most of it one depth frame, one stereo pair and their bytes); no
+// heap; the object belongs into static storage. Cost of a tick without tasks: O(inputs + outputs)
+// bytes, plus one pass over the frame or pair when there is one.
 #pragma once
 
 #include <array>
@@ -88,12 +88,12 @@ struct ExecutiveCounters {
   std::uint64_t can_invalid = 0;  // received with an impossible size: ignored
   std::uint64_t imu_dropped = 0;
   std::uint64_t pose_dropped = 0;
-  std::uint64_t sends_refused = 0;    // by the port, of kMaxCanFramesPerTick at most per tick
-  std::uint64_t depth_invalid = 0;    // frames whose size exceeds the capacity: ignored
-  std::uint64_t stereo_invalid = 0;   // pairs, likewise
+  std::uint64_t sends_refused = 0;     // by the port, of kMaxCanFramesPerTick at most per tick
+  std::uint64_t depth_invalid = 0;     // frames whose size exceeds the capacity: ignored
+  std::uint64_t stereo_invalid = 0;    // pairs, likewise
   std::uint64_t triggers_refused = 0;  // by the stereo camera, or there is none
-  std::uint64_t records_refused = 0;  // by the record sink
-  std::uint64_t overrun_ticks = 0;    // ticks at which a slow task was due but not done
+  std::uint64_t records_refused = 0;   // by the record sink
+  std::uint64_t overrun_ticks = 0;     // ticks at which a slow task was due but not done
 };
 
 class Executive {

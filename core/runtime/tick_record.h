@@ -12,8 +12,8 @@
 
 namespace surefoot::runtime {
 
-// A tick with every list full needs 14.3 kB, a full depth frame 600 kB and a header, a full stereo
-// pair 1.5 MB.
+// A tick with every list full needs 14.3 kB, a full depth frame 600 kB and a header, a full pair
+// 1.5 MB.
 inline constexpr std::size_t kMaxTickBytes = 16 * 1024;
 inline constexpr std::size_t kMaxDepthBytes =
     2 * hal::kMaxDepthWidth_px * hal::kMaxDepthHeight_px + 64;
@@ -33,8 +33,8 @@ struct TickRecord {
   }
 };
 
-// Decodes one kTick message; inputs.depth and .stereo are left null. kCorrupt: too short, too long, or a list
-// beyond its capacity; `out` is then partly overwritten.
+// Decodes one kTick message; inputs.depth and .stereo are left null. kCorrupt: too short, too long,
+// or a list beyond its capacity; `out` is then partly overwritten.
 Status decode_tick(std::span<const std::uint8_t> bytes, TickRecord& out);
 
 // Canonical bytes of a frame into `out`; `size` is how many. kInvalid: the size in the header is

@@ -204,9 +204,9 @@ void Matcher::choose(std::size_t column) {
                                                         : kAmbiguous;
 }
 
-// Sub-pixel part from the sums beside the least: two lines of equal slope (equiangular fit). Only of
-// the paths along the row: where disparities change from row to row, the path from above prefers
-// whole steps of the row before, and its sums would drag the value after it.
+// Sub-pixel part from the sums beside the least: two lines of equal slope (equiangular fit). Only
+// of the paths along the row: where disparities change from row to row, the path from above prefers
+// the value of the row before, and its sums would drag this one after it.
 std::int16_t Matcher::subpixel(std::size_t column, std::int32_t index) const {
   const std::int32_t whole = (last_px_ - index) * kSubpixels;
   if (index == 0 || index + 1 == config_.disparities) return static_cast<std::int16_t>(whole);

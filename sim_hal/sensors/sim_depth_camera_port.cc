@@ -64,12 +64,10 @@ SimDepthCameraPort::Window SimDepthCameraPort::window_of(const Capsule& capsule)
   const double fy = intrinsics_.fy_px;
   Window window;
   window.capsule = capsule;
-  window.u0 =
-      std::max(0, static_cast<int>(std::floor(pixel(bounds.x_low, fx, intrinsics_.cx_px))));
+  window.u0 = std::max(0, static_cast<int>(std::floor(pixel(bounds.x_low, fx, intrinsics_.cx_px))));
   window.u1 = std::min(intrinsics_.width_px - 1,
                        static_cast<int>(std::ceil(pixel(bounds.x_high, fx, intrinsics_.cx_px))));
-  window.v0 =
-      std::max(0, static_cast<int>(std::floor(pixel(bounds.y_low, fy, intrinsics_.cy_px))));
+  window.v0 = std::max(0, static_cast<int>(std::floor(pixel(bounds.y_low, fy, intrinsics_.cy_px))));
   window.v1 = std::min(intrinsics_.height_px - 1,
                        static_cast<int>(std::ceil(pixel(bounds.y_high, fy, intrinsics_.cy_px))));
   return window;

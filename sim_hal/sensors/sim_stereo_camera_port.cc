@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kStereoStream = 7;
 constexpr double kBrightness = 255.0;
-constexpr double kAlbedo = 0.45;      // of the ground, mean
+constexpr double kAlbedo = 0.45;       // of the ground, mean
 constexpr double kPatternShare = 0.5;  // of the brightness, per unit of the pattern
 constexpr double kSky = 0.8;
 constexpr double kAmbient = 0.45;  // share of the light that comes from everywhere
@@ -20,8 +20,8 @@ constexpr double kFarthest_m = 10.0;
 // Where a lens puts the direction (x, y, 1), in focal lengths (OpenCV's model).
 Vector2 distorted(const std::array<double, 8>& k, const Vector2& at) {
   const double r2 = at.squaredNorm();
-  const double radial = (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) /
-                        (1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
+  const double radial =
+      (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) / (1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
   const double xy = at.x() * at.y();
   return {at.x() * radial + 2 * k[2] * xy + k[3] * (r2 + 2 * at.x() * at.x()),
           at.y() * radial + k[2] * (r2 + 2 * at.y() * at.y()) + 2 * k[3] * xy};
@@ -53,9 +53,8 @@ Matrix3 matrix_of(const std::array<double, 9>& rows) {
 }  // namespace
 
 SimStereoCameraPort::SimStereoCameraPort(const robot::StereoCameraSpecification& specification,
-                                         const StereoImageConfig& config,
-                                         const FaultConfig& faults, const TerrainIndex& terrain,
-                                         std::uint64_t seed)
+                                         const StereoImageConfig& config, const FaultConfig& faults,
+                                         const TerrainIndex& terrain, std::uint64_t seed)
     : specification_(specification),
       config_(config),
       faults_(faults),
@@ -147,9 +146,8 @@ double SimStereoCameraPort::grey_at(std::size_t u, std::size_t v, const Vector3&
   if (normal.dot(points_W_m_[i] - p_WC_m) > 0) normal = -normal;
   const Vector3 sun = Vector3(0.35, 0.25, 0.9).normalized();
   const double lit = std::max(0.0, normal.dot(sun)) / std::max(normal.norm(), 1e-12);
-  const double albedo =
-      kAlbedo + kPatternShare * config_.texture *
-                    pattern_.at(points_W_m_[i], std::max(footprint_m, 1e-5));
+  const double albedo = kAlbedo + kPatternShare * config_.texture *
+                                      pattern_.at(points_W_m_[i], std::max(footprint_m, 1e-5));
   return std::max(0.0, albedo) * (kAmbient + (1.0 - kAmbient) * lit);
 }
 

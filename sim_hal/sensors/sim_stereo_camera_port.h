@@ -1,5 +1,5 @@
-// Simulated stereo camera: on trigger, both eyes' pictures of the patterned ground and of the robot's
-// legs, through their calibration's lenses. README.md "Stereo camera" has the model.
+// Simulated stereo camera: on trigger, both eyes' pictures of the patterned ground and of the
+// robot's legs, through their calibration's lenses. README.md "Stereo camera" has the model.
 #pragma once
 
 #include <array>

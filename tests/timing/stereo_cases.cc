@@ -108,8 +108,7 @@ class StereoTaskCase final : public WorkCase {
     if (round > 0) return false;
     const apps::RunRequest request{"littledog", "flat", "cross", "sim", 1, {}};
     apps::ConfigIssues issues;
-    const apps::Config config =
-        apps::load_config(request, SUREFOOT_SOURCE_DIR "/config", issues);
+    const apps::Config config = apps::load_config(request, SUREFOOT_SOURCE_DIR "/config", issues);
     SUREFOOT_ASSERT(issues.empty());
     SUREFOOT_ASSERT(ok(task_.reset(config.robot.stereo_camera, config.autonomy.stereo)));
     pair_.width_px = kWidth_px;

@@ -53,9 +53,9 @@ class StereoConfig : public testing::Test {
   Config config_;
 
  private:
-  fs::path folder_ = fs::temp_directory_path() /
-                     (std::string("surefoot_stereo_") +
-                      testing::UnitTest::GetInstance()->current_test_info()->name());
+  fs::path folder_ =
+      fs::temp_directory_path() / (std::string("surefoot_stereo_") +
+                                   testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(StereoConfig, ReadsWhatOpenCvWrites) {
@@ -115,8 +115,8 @@ TEST_F(StereoConfig, RefusesWhatIsMissingOrNoPair) {
       {"-0.07,", "0.07,", "swapped?"},
       {"-0.07,", "0.0,", "no baseline"},
       {"rows: 1\n   cols: 5", "rows: 1\n   cols: 6", "wrong size: 5 numbers for 1 x 6"},
-      {"camera_matrix_left: !!opencv-matrix", "camera_matrix_left: 7\nx: ",
-       "expected a matrix of rows, cols and data"},
+      {"camera_matrix_left: !!opencv-matrix",
+       "camera_matrix_left: 7\nx: ", "expected a matrix of rows, cols and data"},
       {"image_height: 240", "image_height: [", "not valid YAML"},
   };
   for (const auto& c : cases) {

@@ -391,8 +391,7 @@ TEST_F(ExecutiveTest, RecordsTheStereoPairBeforeItsTickAndHashesIt) {
 }
 
 TEST_F(ExecutiveTest, APairLargerThanTheCapacityIsIgnoredAndCounted) {
-  board_.stereo.frame.width_px = 2000;
-  board_.stereo.frame.height_px = 2000;
+  board_.stereo.frame.width_px = board_.stereo.frame.height_px = 2000;
   board_.stereo.waiting = 1;
   start({control_.row(1, 0, 0)});
   tick();

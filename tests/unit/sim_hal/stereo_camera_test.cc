@@ -44,8 +44,8 @@ StereoImageConfig clear_pictures() {
 
 // A pair alone over a terrain, trunk level.
 struct Scene {
-  explicit Scene(const StereoImageConfig& config = clear_pictures(),
-                 const FaultConfig& faults = {}, std::uint64_t seed = 1)
+  explicit Scene(const StereoImageConfig& config = clear_pictures(), const FaultConfig& faults = {},
+                 std::uint64_t seed = 1)
       : terrain(make_terrain({}, 1)), index(terrain) {
     camera = std::make_unique<SimStereoCameraPort>(specification, config, faults, index, seed);
   }
@@ -93,16 +93,16 @@ PlaneErrors compare_with_plane(const Scene& scene) {
   rectifier->clear_unseen(3, *image);
   Matrix3 axes;
   axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  const Matrix3 R_WN =
-      mount_rotation(scene.specification.mount) * axes * pair.R_NV.transpose();
+  const Matrix3 R_WN = mount_rotation(scene.specification.mount) * axes * pair.R_NV.transpose();
   PlaneErrors errors;
   double count = 0;
   double tried = 0;
   double good = 0;
   for (std::size_t v = 0; v < 240; ++v) {
     for (std::size_t u = 96; u < 320; ++u) {
-      const Vector3 ray_W = R_WN * Vector3((static_cast<double>(u) - pair.cx_px) / pair.focal_px,
-                                           (static_cast<double>(v) - pair.cy_px) / pair.focal_px, 1);
+      const Vector3 ray_W =
+          R_WN * Vector3((static_cast<double>(u) - pair.cx_px) / pair.focal_px,
+                         (static_cast<double>(v) - pair.cy_px) / pair.focal_px, 1);
       const double truth_px = pair.focal_px * pair.baseline_m * -ray_W.z() / kHeight_m;
       if (truth_px < 5) continue;
       ++tried;
