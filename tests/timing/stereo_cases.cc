@@ -113,10 +113,18 @@ class StereoTaskCase final : public WorkCase {
     SUREFOOT_ASSERT(ok(task_.reset(config.robot.stereo_camera, config.autonomy.stereo)));
     pair_.width_px = kWidth_px;
     pair_.height_px = kHeight_px;
-    // Columns of a random pattern: what distortion and turn move from row to row still matches.
+    // Columns of a coarse random pattern: what lenses and turn move from row to row, and by parts
+    // of a pixel, still matches.
     Random random(1);
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
     for (std::size_t u = 0; u < kWidth_px; ++u) {
-      const auto grey = static_cast<std::uint8_t>(random.below(256));
+      const std::uint32_t part = u % 4;
+      if (part == 0) {
+        from = to;
+        to = random.below(256);
+      }
+      const auto grey = static_cast<std::uint8_t>((from * (4 - part) + to * part) / 4);
       for (std::size_t v = 0; v < kHeight_px; ++v) {
         pair_.left[v * kWidth_px + u] = grey;
         if (u >= kNear_px) pair_.right[v * kWidth_px + u - kNear_px] = grey;
