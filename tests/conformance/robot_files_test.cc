@@ -8,6 +8,7 @@
 
 #include "apps/common/config_node.h"
 #include "apps/common/config_reader.h"
+#include "apps/common/config_stereo.h"
 #include "core/actuation/joint_bus.h"
 #include "core/robot/robot_model.h"
 
@@ -16,7 +17,8 @@ namespace {
 
 robot::RobotModel read_robot(const std::string& path) {
   apps::ConfigIssues issues;
-  const apps::ConfigNode tree = apps::read_yaml_file(path, issues);
+  apps::ConfigNode tree = apps::read_yaml_file(path, issues);
+  apps::load_stereo(tree, issues);
   robot::RobotModel model;
   const apps::ConfigNode* const node = tree.find("robot");
   EXPECT_NE(node, nullptr) << path;
