@@ -152,6 +152,20 @@ void JointBus::receive_frame(const hal::CanFrame& frame, bool listening) {
   apply(joint, reply.value(), frame.stamp);
 }
 
+JointState JointBus::joint_state(const Wire& wire, const Reply& reply, TimeNs stamp) {
+  const JointCommand joint_side = from_wire({.position_rad = reply.position_rad,
+                                             .velocity_rad_s = reply.velocity_rad_s,
+                                             .kp_Nm_rad = 0,
+                                             .kd_Nm_s_rad = 0,
+                                             .torque_Nm = reply.torque_Nm},
+                                            wire.scale, wire.offset_rad);
+  return {.position_rad = joint_side.position_rad,
+          .velocity_rad_s = joint_side.velocity_rad_s,
+          .torque_Nm = joint_side.torque_Nm,
+          .stamp = stamp,
+          .valid = true};
+}
+
 void JointBus::apply(std::size_t joint, const Reply& reply, TimeNs stamp) {
   const Wire& wire = wires_[joint];
   Link& link = links_[joint];
@@ -160,17 +174,8 @@ void JointBus::apply(std::size_t joint, const Reply& reply, TimeNs stamp) {
   if (link.outstanding > 0) --link.outstanding;
   link.missed_in_a_row = 0;
 
-  const JointCommand joint_side = from_wire({.position_rad = reply.position_rad,
-                                             .velocity_rad_s = reply.velocity_rad_s,
-                                             .kp_Nm_rad = 0,
-                                             .kd_Nm_s_rad = 0,
-                                             .torque_Nm = reply.torque_Nm},
-                                            wire.scale, wire.offset_rad);
-  states_[joint] = {.position_rad = joint_side.position_rad,
-                    .velocity_rad_s = joint_side.velocity_rad_s,
-                    .torque_Nm = joint_side.torque_Nm,
-                    .stamp = stamp,
-                    .valid = true};
+  states_[joint] = joint_state(wire, reply, stamp);
+  measured_[joint] = joint_state(wire, centred(wire.ranges, reply), stamp);
   if (reply.has_health) {
     health_[joint].error = reply.error;
     health_[joint].temperature_code = reply.temperature_code;
@@ -198,7 +203,10 @@ void JointBus::note_sent(std::size_t joint) {
     link.missed += link.outstanding;
     counters_.missed += link.outstanding;
     ++link.missed_in_a_row;
-    if (link.missed_in_a_row >= parameters_.silent_after_ticks) states_[joint].valid = false;
+    if (link.missed_in_a_row >= parameters_.silent_after_ticks) {
+      states_[joint].valid = false;
+      measured_[joint].valid = false;
+    }
   }
   link.outstanding = 1;
 }
