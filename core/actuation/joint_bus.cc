@@ -87,8 +87,8 @@ Status JointBus::configure_joint(const robot::RobotModel& model, std::size_t joi
                           math::is_finite(wiring.belt_ratio) && wiring.belt_ratio > 0.0;
   const bool good_address = wiring.bus < hal::kMaxCanBuses && wiring.can_id >= 1 &&
                             wiring.can_id <= 0xFF;  // a reply names the drive in one byte
-  const bool good_limits = math::is_finite(wiring.offset_rad) &&
-                           math::is_finite(range.min_rad) && math::is_finite(range.max_rad) &&
+  const bool good_limits = math::is_finite(wiring.offset_rad) && math::is_finite(range.min_rad) &&
+                           math::is_finite(range.max_rad) &&
                            math::is_finite(actuator.torque_limit_Nm) &&
                            actuator.torque_limit_Nm > 0.0;
   if (!valid(wire.ranges) || !good_scale || !good_address || !good_limits) return Status::kInvalid;
