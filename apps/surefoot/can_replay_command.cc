@@ -101,7 +101,7 @@ class Decoder {
 
  private:
   void end_tick() {
-    if (bus_.all_valid()) estimator_.tick(tick_end_, bus_.states());
+    if (bus_.all_valid()) estimator_.tick(tick_end_, bus_.measured());
     tick_end_ = tick_end_ + autonomy::kTickPeriod;
   }
 

@@ -87,8 +87,8 @@ Status JointBus::configure_joint(const robot::RobotModel& model, std::size_t joi
                           math::is_finite(wiring.belt_ratio) && wiring.belt_ratio > 0.0;
   const bool good_address = wiring.bus < hal::kMaxCanBuses && wiring.can_id >= 1 &&
                             wiring.can_id <= 0xFF;  // a reply names the drive in one byte
-  const bool good_limits = math::is_finite(wiring.offset_rad) &&
-                           math::is_finite(range.min_rad) && math::is_finite(range.max_rad) &&
+  const bool good_limits = math::is_finite(wiring.offset_rad) && math::is_finite(range.min_rad) &&
+                           math::is_finite(range.max_rad) &&
                            math::is_finite(actuator.torque_limit_Nm) &&
                            actuator.torque_limit_Nm > 0.0;
   if (!valid(wire.ranges) || !good_scale || !good_address || !good_limits) return Status::kInvalid;
@@ -152,6 +152,20 @@ void JointBus::receive_frame(const hal::CanFrame& frame, bool listening) {
   apply(joint, reply.value(), frame.stamp);
 }
 
+JointState JointBus::joint_state(const Wire& wire, const Reply& reply, TimeNs stamp) {
+  const JointCommand joint_side = from_wire({.position_rad = reply.position_rad,
+                                             .velocity_rad_s = reply.velocity_rad_s,
+                                             .kp_Nm_rad = 0,
+                                             .kd_Nm_s_rad = 0,
+                                             .torque_Nm = reply.torque_Nm},
+                                            wire.scale, wire.offset_rad);
+  return {.position_rad = joint_side.position_rad,
+          .velocity_rad_s = joint_side.velocity_rad_s,
+          .torque_Nm = joint_side.torque_Nm,
+          .stamp = stamp,
+          .valid = true};
+}
+
 void JointBus::apply(std::size_t joint, const Reply& reply, TimeNs stamp) {
   const Wire& wire = wires_[joint];
   Link& link = links_[joint];
@@ -160,17 +174,8 @@ void JointBus::apply(std::size_t joint, const Reply& reply, TimeNs stamp) {
   if (link.outstanding > 0) --link.outstanding;
   link.missed_in_a_row = 0;
 
-  const JointCommand joint_side = from_wire({.position_rad = reply.position_rad,
-                                             .velocity_rad_s = reply.velocity_rad_s,
-                                             .kp_Nm_rad = 0,
-                                             .kd_Nm_s_rad = 0,
-                                             .torque_Nm = reply.torque_Nm},
-                                            wire.scale, wire.offset_rad);
-  states_[joint] = {.position_rad = joint_side.position_rad,
-                    .velocity_rad_s = joint_side.velocity_rad_s,
-                    .torque_Nm = joint_side.torque_Nm,
-                    .stamp = stamp,
-                    .valid = true};
+  states_[joint] = joint_state(wire, reply, stamp);
+  measured_[joint] = joint_state(wire, centred(wire.ranges, reply), stamp);
   if (reply.has_health) {
     health_[joint].error = reply.error;
     health_[joint].temperature_code = reply.temperature_code;
@@ -198,7 +203,10 @@ void JointBus::note_sent(std::size_t joint) {
     link.missed += link.outstanding;
     counters_.missed += link.outstanding;
     ++link.missed_in_a_row;
-    if (link.missed_in_a_row >= parameters_.silent_after_ticks) states_[joint].valid = false;
+    if (link.missed_in_a_row >= parameters_.silent_after_ticks) {
+      states_[joint].valid = false;
+      measured_[joint].valid = false;
+    }
   }
   link.outstanding = 1;
 }

@@ -193,7 +193,9 @@ class JointBus {
   // kp = 0, speed 0, torque 0, kd = the damping gain: the robot sinks without falling.
   JointCommands damping_commands() const;
 
+  // As decoded, and as they were in the mean (centred()): what to estimate from.
   const JointStates& states() const { return states_; }
+  const JointStates& measured() const { return measured_; }
   const DriveHealth& health(std::size_t joint) const { return health_[joint]; }
   const BusCounters& counters() const { return counters_; }
   // Ticks in a row without a reply, and since configure().
@@ -231,6 +233,7 @@ class JointBus {
   Status configure_joint(const robot::RobotModel& model, std::size_t joint);
   std::size_t joint_on(std::uint8_t bus, std::uint32_t id) const;  // kJoints: none
   void receive_frame(const hal::CanFrame& frame, bool listening);
+  static JointState joint_state(const Wire& wire, const Reply& reply, TimeNs stamp);
   void apply(std::size_t joint, const Reply& reply, TimeNs stamp);
   hal::CanFrame frame_to(std::size_t joint) const;
   JointCommand limit(std::size_t joint, const JointCommand& command) const;
@@ -244,6 +247,7 @@ class JointBus {
   std::array<Link, robot::kJoints> links_{};
   std::array<std::uint8_t, robot::kJoints> order_{};  // joints by bus, then joint
   JointStates states_{};
+  JointStates measured_{};
   std::array<DriveHealth, robot::kJoints> health_{};
   BusCounters counters_{};
   bool configured_ = false;

@@ -59,6 +59,8 @@ std::uint32_t encode_symmetric(double x, double range, unsigned bits) {
   return encode_field(x, -range, range, bits);
 }
 
+double half_step(double range, unsigned bits) { return range / ((1u << bits) - 1u); }
+
 double decode_symmetric(std::uint32_t code, double range, unsigned bits) {
   return decode_field(code, -range, range, bits);
 }
@@ -158,6 +160,14 @@ Result<Reply> decode_reply(const WireRanges& ranges, std::span<const std::uint8_
     reply.temperature_code = bytes[6];
     reply.error = static_cast<DriveError>(bytes[7]);
   }
+  return reply;
+}
+
+Reply centred(const WireRanges& ranges, const Reply& decoded) {
+  Reply reply = decoded;
+  reply.position_rad += half_step(ranges.position_rad, kPositionBits);
+  reply.velocity_rad_s += half_step(ranges.velocity_rad_s, kFieldBits);
+  reply.torque_Nm += half_step(ranges.torque_Nm, kFieldBits);
   return reply;
 }
 

@@ -106,6 +106,11 @@ Result<std::uint8_t> reply_drive_id(std::span<const std::uint8_t> bytes);
 // kInvalid: not 6, 7 or 8 bytes, or a range is not valid.
 Result<Reply> decode_reply(const WireRanges& ranges, std::span<const std::uint8_t> bytes);
 
+// What the drive measured, in the mean: position, velocity and torque half a code higher than
+// decoded, for the drive truncates. Half a code of velocity is 7 to 16 mrad/s, and never averages
+// out.
+Reply centred(const WireRanges& ranges, const Reply& decoded);
+
 // The drive's side: 8 bytes with health, 7 with voltage, else 6. Values are clamped.
 // kInvalid: a value is not finite or a range is not valid.
 Result<ReplyBytes> encode_reply(const WireRanges& ranges, const Reply& reply);

@@ -111,7 +111,7 @@ void Autonomy::receive() {
   const bool recovering = mission_.phase() == MissionPhase::kRecover;
   const bool still = mission_.phase() == MissionPhase::kEnableDrives;
   imu_refused_ += estimator_.update(inputs_->stamp, {inputs_->imu.data(), inputs_->imu.size()},
-                                    bus_.states(), gait_phases(), still);
+                                    bus_.measured(), gait_phases(), still);
   // Folded on the ground no foot bears load: the accelerometer alone would carry the trunk away.
   if (still || recovering) estimator_.place(footing_O_m_);
   if (walking_ready_) {
@@ -215,7 +215,7 @@ void Autonomy::recover(const estimation::RobotState& state) {
 
 void Autonomy::start_stand_up() {
   if (recovery_.done()) return stand_up_.start_folded();
-  stand_up_.start(bus_.states());
+  stand_up_.start(bus_.measured());
 }
 
 // Stand-up is over: O gets its place on the ground below the trunk, where the feet say that it is,

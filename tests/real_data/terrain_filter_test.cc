@@ -39,7 +39,7 @@ cv::Mat heights_of(const sim::RawHeightMap& raw) {
 
 TEST(RealGround, TheFilterHasOpenCvsBitsOnEveryScan) {
   for (const char* name : {"otira_rocks_a_2cm.asc", "forest_marv_lowest_5cm.asc"}) {
-    const std::string file = std::string(SUREFOOT_SHARED_DATA) + "/terrain/" + name;
+    const std::string file = SUREFOOT_SHARED_DATA "/terrain/" + std::string(name);
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recording at " << file;
     const sim::RawHeightMap raw = sim::read_height_map(file);
     ASSERT_LE(std::max(raw.rows, raw.columns), static_cast<std::size_t>(kSide));

@@ -205,6 +205,12 @@ TEST_F(JointBusTest, RepliesBecomeJointStates) {
     EXPECT_NEAR(state.position_rad, q, 25.0 / 65535);
     EXPECT_NEAR(state.velocity_rad_s, 3.0, 90.0 / 4095);
     EXPECT_NEAR(state.torque_Nm, 5.0, 36.0 / 4095 * kBelt);
+    // Half a code nearer to the upper end on the wire, whichever way the joint turns there.
+    const JointState& measured = bus_.measured()[joint];
+    EXPECT_TRUE(measured.valid);
+    EXPECT_NEAR(measured.position_rad - state.position_rad, 12.5 / 65535 / scale, 1e-12);
+    EXPECT_NEAR(measured.velocity_rad_s - state.velocity_rad_s, 45.0 / 4095 / scale, 1e-12);
+    EXPECT_NEAR(measured.torque_Nm - state.torque_Nm, 18.0 / 4095 * scale, 1e-12);
   }
   EXPECT_TRUE(bus_.all_valid());
 }
@@ -278,6 +284,7 @@ TEST_F(JointBusTest, ADriveThatStopsAnsweringBecomesSilentAndComesBack) {
   sent();
   EXPECT_EQ(bus_.silent_joints(), 1u << 5u);
   EXPECT_FALSE(bus_.states()[5].valid);
+  EXPECT_FALSE(bus_.measured()[5].valid);
   answer_all();
   EXPECT_EQ(bus_.silent_joints(), 0u);
   EXPECT_TRUE(bus_.all_valid());

@@ -223,7 +223,9 @@ TEST(MotionFiles, AreWhatTheRobotCanDo) {
 }
 
 std::string file_text(const std::string& name) {
-  std::ifstream stream(config_folder() / "motions" / (name + ".yaml"));
+  std::filesystem::path file = config_folder() / "motions" / name;
+  file += ".yaml";
+  std::ifstream stream(file);
   std::stringstream text;
   text << stream.rdbuf();
   return text.str();
