@@ -89,7 +89,7 @@ bool MapTask::release(const hal::DepthFrame& frame, const mapping::DepthNoise* n
     return false;
   }
   pose_ = pose.value();
-  frame_ = frame;
+  frame_.assign(frame);
   has_noise_ = noise != nullptr;
   if (has_noise_) {
     std::copy_n(noise->factors.begin(), std::min(frame.pixel_count(), noise_.factors.size()),

@@ -6,6 +6,7 @@
 
 #include "core/base/parameters.h"
 #include "core/stereo/matcher_config.h"
+#include "core/stereo/point_cloud.h"
 
 namespace surefoot::autonomy {
 
@@ -21,10 +22,7 @@ struct StereoConfig {
   std::uint8_t shrink = 1;
   stereo::MatcherConfig matcher;
   double least_valid_share = 0;
-  // How sure (core/stereo/point_cloud.h)
-  double disparity_floor_px = 0;
-  double grey_noise = 0;
-  double relief_share = 0;
+  stereo::DisparityNoise noise;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -38,12 +36,7 @@ struct StereoConfig {
     visit.group("matcher", self.matcher);
     visit.real("least_valid_share", self.least_valid_share, {0.0, 1.0},
                "of the pixels that must have a disparity in range: else nothing is mapped");
-    visit.real("disparity_floor_px", self.disparity_floor_px, {0.001, 2.0},
-               "one sigma of a disparity where contrast is high");
-    visit.real("grey_noise", self.grey_noise, {0.0, 100.0},
-               "one sigma of a disparity, in pixels, times the grey levels of contrast");
-    visit.real("relief_share", self.relief_share, {0.0, 4.0},
-               "one sigma of a disparity per pixel by which the surface around it is no plane");
+    stereo::DisparityNoise::describe(self.noise, visit);
   }
 };
 

@@ -78,7 +78,7 @@ Status StereoTask::reset(const robot::StereoCameraSpecification& camera,
   camera_.X_BC = optical_pose(camera.mount);
   camera_.X_BC.rotation.matrix *= plan_.pair.R_NV.transpose();
   camera_.sensor.inverse_depth_sigma_per_m =
-      config.disparity_floor_px / (plan_.pair.focal_px * plan_.pair.baseline_m);
+      config.noise.disparity_floor_px / (plan_.pair.focal_px * plan_.pair.baseline_m);
   camera_.sensor.min_range_m = camera.min_range_m;
   camera_.sensor.max_range_m = camera.max_range_m;
   depth_unit_m_ = camera.max_range_m / kDepthSteps;
@@ -107,12 +107,7 @@ bool StereoTask::release(const hal::StereoFrame& pair) {
     ++counters_.pairs_refused;
     return false;
   }
-  pair_.stamp = pair.stamp;
-  pair_.sequence = pair.sequence;
-  pair_.width_px = pair.width_px;
-  pair_.height_px = pair.height_px;
-  std::copy_n(pair.left.begin(), pair.pixel_count(), pair_.left.begin());
-  std::copy_n(pair.right.begin(), pair.pixel_count(), pair_.right.begin());
+  pair_.assign(pair);
   return true;
 }
 
@@ -137,10 +132,7 @@ void StereoTask::fill(StereoPicture& picture) {
   picture.depth.depth_unit_m = static_cast<float>(depth_unit_m_);
   const double unit_m = static_cast<double>(picture.depth.depth_unit_m);
   const double numerator = pair.focal_px * pair.baseline_m * stereo::kSubpixels;
-  const double per_sigma = mapping::DepthNoise::kUnit / config_.disparity_floor_px;
-  const stereo::PointConfig points{.disparity_floor_px = config_.disparity_floor_px,
-                                   .grey_noise = config_.grey_noise,
-                                   .relief_share = config_.relief_share};
+  const double per_sigma = mapping::DepthNoise::kUnit / config_.noise.disparity_floor_px;
   std::uint32_t valid = 0;
   std::size_t i = 0;
   for (std::size_t v = 0; v < pair.height_px; ++v) {
@@ -150,7 +142,7 @@ void StereoTask::fill(StereoPicture& picture) {
       if (row[u] == stereo::kNoDisparity || row[u] <= 0) continue;
       const double z_m = numerator / row[u];
       if (z_m < camera_.sensor.min_range_m || z_m > camera_.sensor.max_range_m) continue;
-      const double sigma_px = math::sqrt(disparity_variance_px2(disparities_, u, v, points));
+      const double sigma_px = math::sqrt(disparity_variance_px2(disparities_, u, v, config_.noise));
       picture.depth.depth[i] = static_cast<std::uint16_t>(z_m / unit_m + 0.5);
       picture.noise.factors[i] =
           static_cast<std::uint16_t>(std::min(sigma_px * per_sigma + 0.5, 65535.0));

@@ -13,9 +13,9 @@ double bend_px(std::int16_t before, std::int16_t here, std::int16_t behind) {
 }  // namespace
 
 double disparity_variance_px2(const DisparityImage& image, std::size_t u, std::size_t v,
-                              const PointConfig& config) {
+                              const DisparityNoise& noise) {
   const double contrast = image.contrasts[v * image.width_px + u];
-  const double noise_px = contrast > 0.0 ? config.grey_noise / contrast : config.grey_noise;
+  const double grey_px = contrast > 0.0 ? noise.grey_noise / contrast : noise.grey_noise;
   constexpr std::size_t kReach = kReliefReach_px;
   const std::int16_t* row = image.row(v);
   double relief2 = 0.0;
@@ -27,8 +27,8 @@ double disparity_variance_px2(const DisparityImage& image, std::size_t u, std::s
     const double down = bend_px(image.row(v - kReach)[u], row[u], image.row(v + kReach)[u]);
     relief2 += down * down;
   }
-  return config.disparity_floor_px * config.disparity_floor_px + noise_px * noise_px +
-         config.relief_share * config.relief_share * relief2;
+  return noise.disparity_floor_px * noise.disparity_floor_px + grey_px * grey_px +
+         noise.relief_share * noise.relief_share * relief2;
 }
 
 Status make_points(const DisparityImage& image, const RectifiedPair& pair,
@@ -51,7 +51,7 @@ Status make_points(const DisparityImage& image, const RectifiedPair& pair,
       StereoPoint point;
       point.p_N_m = Vector3((static_cast<double>(u) - pair.cx_px) / pair.focal_px * z,
                             (static_cast<double>(v) - pair.cy_px) / pair.focal_px * z, z);
-      point.variance_m2 = z_per_px * z_per_px * disparity_variance_px2(image, u, v, config);
+      point.variance_m2 = z_per_px * z_per_px * disparity_variance_px2(image, u, v, config.noise);
       point.u_px = static_cast<std::uint16_t>(u);
       point.v_px = static_cast<std::uint16_t>(v);
       if (!ok(out.push_back(point))) return Status::kExhausted;

@@ -14,25 +14,35 @@ namespace surefoot::stereo {
 
 inline constexpr std::size_t kMaxPoints = 320 * 240;
 
-struct PointConfig {
-  std::uint8_t stride = 1;
-  double min_range_m = 0;  // z in N
-  double max_range_m = 0;
+// How sure a disparity is.
+struct DisparityNoise {
   double disparity_floor_px = 0;
   double grey_noise = 0;
   double relief_share = 0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.integer("stride", self.stride, {1, 16}, "every n-th pixel and row becomes a point");
-    visit.real("min_range_m", self.min_range_m, {0.01, 100.0}, "nearest point along the axis");
-    visit.real("max_range_m", self.max_range_m, {0.01, 1000.0}, "farthest point along the axis");
     visit.real("disparity_floor_px", self.disparity_floor_px, {0.001, 2.0},
                "one sigma of a disparity where contrast is high");
     visit.real("grey_noise", self.grey_noise, {0.0, 100.0},
                "one sigma of a disparity, in pixels, times the grey levels of contrast");
     visit.real("relief_share", self.relief_share, {0.0, 4.0},
                "one sigma of a disparity per pixel by which the surface around it is no plane");
+  }
+};
+
+struct PointConfig {
+  std::uint8_t stride = 1;
+  double min_range_m = 0;  // z in N
+  double max_range_m = 0;
+  DisparityNoise noise;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.integer("stride", self.stride, {1, 16}, "every n-th pixel and row becomes a point");
+    visit.real("min_range_m", self.min_range_m, {0.01, 100.0}, "nearest point along the axis");
+    visit.real("max_range_m", self.max_range_m, {0.01, 1000.0}, "farthest point along the axis");
+    DisparityNoise::describe(self.noise, visit);
   }
 };
 
@@ -51,7 +61,7 @@ using PointCloud = FixedVector<StereoPoint, kMaxPoints>;
 // take such a surface for a plane. Neighbours beyond the picture or without disparity tell nothing.
 inline constexpr std::size_t kReliefReach_px = 3;
 double disparity_variance_px2(const DisparityImage& image, std::size_t u, std::size_t v,
-                              const PointConfig& config);
+                              const DisparityNoise& noise);
 
 // sigma_z = z^2 / (focal baseline) sigma_d.
 // kExhausted: kMaxPoints reached, the rows below are left out. kInvalid: sizes differ, or a value

@@ -1,6 +1,7 @@
 // Depth camera: images of z-distance, as the device delivers them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -46,6 +47,15 @@ struct DepthFrame {
 
   std::size_t pixel_count() const {
     return static_cast<std::size_t>(intrinsics.width_px) * intrinsics.height_px;
+  }
+
+  // Copies the pixels in use; the rest keeps what it held. At most depth.size() are.
+  void assign(const DepthFrame& frame) {
+    stamp = frame.stamp;
+    sequence = frame.sequence;
+    intrinsics = frame.intrinsics;
+    depth_unit_m = frame.depth_unit_m;
+    std::copy_n(frame.depth.begin(), frame.pixel_count(), depth.begin());
   }
 
   template <class Self, class Visitor>

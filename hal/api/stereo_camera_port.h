@@ -1,6 +1,7 @@
 // Stereo pair: two grey images exposed together, as the devices deliver them (not rectified).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -23,6 +24,16 @@ struct StereoFrame {
   std::array<std::uint8_t, kMaxStereoWidth_px * kMaxStereoHeight_px> right{};
 
   std::size_t pixel_count() const { return static_cast<std::size_t>(width_px) * height_px; }
+
+  // Copies the pixels in use; the rest keeps what it held. At most left.size() are.
+  void assign(const StereoFrame& frame) {
+    stamp = frame.stamp;
+    sequence = frame.sequence;
+    width_px = frame.width_px;
+    height_px = frame.height_px;
+    std::copy_n(frame.left.begin(), frame.pixel_count(), left.begin());
+    std::copy_n(frame.right.begin(), frame.pixel_count(), right.begin());
+  }
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -81,50 +81,51 @@ class ReplayOperator final : public OperatorPort {
   SensorCounters counters_;
 };
 
-class ReplayDepth final : public DepthCameraPort {
+// A camera whose pictures lie beside the tick's inputs, which say whether there is one.
+template <class Port, class Frame, auto kFresh>
+class ReplayFrames : public Port {
  public:
-  explicit ReplayDepth(const runtime::TickRecord& tick) : tick_(tick) {}
-  void rewind() { waiting_ = tick_.inputs.depth_fresh; }
-  DepthFrame& frame() { return frame_; }
+  explicit ReplayFrames(const runtime::TickRecord& tick) : tick_(tick) {}
+  void forget() { read_ = false; }
+  // Of a message that was decoded into frame().
+  void note(TimeNs tick_stamp) {
+    read_ = true;
+    tick_stamp_ = tick_stamp;
+  }
+  // The inputs tell of a picture that was not read.
+  bool missing() const {
+    return tick_.inputs.*kFresh && !(read_ && tick_stamp_ == tick_.inputs.stamp);
+  }
+  void rewind() { waiting_ = tick_.inputs.*kFresh; }
+  Frame& frame() { return frame_; }
 
  private:
-  Status do_receive(DepthFrame& out) override {
+  Status do_receive(Frame& out) override {
     if (!waiting_) return Status::kUnavailable;
     waiting_ = false;
-    out = frame_;
+    out.assign(frame_);
     ++counters_.delivered;
     return Status::kOk;
   }
   SensorCounters do_counters() const override { return counters_; }
 
   const runtime::TickRecord& tick_;
+  bool read_ = false;
+  TimeNs tick_stamp_;  // of the tick that latched the picture read last
   bool waiting_ = false;
-  DepthFrame frame_;
+  Frame frame_;
   SensorCounters counters_;
 };
+using ReplayDepth = ReplayFrames<DepthCameraPort, DepthFrame, &autonomy::TickInputs::depth_fresh>;
 
-class ReplayStereo final : public StereoCameraPort {
+class ReplayStereo final
+    : public ReplayFrames<StereoCameraPort, StereoFrame, &autonomy::TickInputs::stereo_fresh> {
  public:
-  explicit ReplayStereo(const runtime::TickRecord& tick) : tick_(tick) {}
-  void rewind() { waiting_ = tick_.inputs.stereo_fresh; }
-  StereoFrame& frame() { return frame_; }
+  using ReplayFrames::ReplayFrames;
 
  private:
   // What came of it is in the record.
   Status do_trigger() override { return Status::kOk; }
-  Status do_receive(StereoFrame& out) override {
-    if (!waiting_) return Status::kUnavailable;
-    waiting_ = false;
-    out = frame_;
-    ++counters_.delivered;
-    return Status::kOk;
-  }
-  SensorCounters do_counters() const override { return counters_; }
-
-  const runtime::TickRecord& tick_;
-  bool waiting_ = false;
-  StereoFrame frame_;
-  SensorCounters counters_;
 };
 
 }  // namespace
@@ -145,11 +146,7 @@ struct ReplayBoard::Impl final : public Clock {
   ReplayPose pose{tick};
   ReplayOperator operator_port{tick};
   ReplayDepth depth{tick};
-  bool depth_read = false;
-  TimeNs depth_stamp;  // of the tick that latched the frame read last
   ReplayStereo stereo{tick};
-  bool stereo_read = false;
-  TimeNs stereo_stamp;  // likewise
 
   virtual ~Impl() = default;
   void read_tick();
@@ -170,8 +167,8 @@ void ReplayBoard::Impl::stop(ReplayEnd how, const std::string& reason,
 
 // Reads up to the next tick; afterwards tick_waits or end is set.
 void ReplayBoard::Impl::read_tick() {
-  depth_read = false;
-  stereo_read = false;
+  depth.forget();
+  stereo.forget();
   RecordMessage message;
   while (!tick_waits && end == ReplayEnd::kNotYet) {
     const Status status = reader.next(message);
@@ -197,15 +194,13 @@ bool ReplayBoard::Impl::take(const RecordMessage& message) {
       if (!ok(runtime::decode_depth(message.bytes, depth.frame()))) {
         stop(ReplayEnd::kDamaged, "a depth frame does not decode: of another version?", message);
       }
-      depth_read = true;
-      depth_stamp = message.stamp;
+      depth.note(message.stamp);
       return false;
     case RecordChannel::kStereo:
       if (!ok(runtime::decode_stereo(message.bytes, stereo.frame()))) {
         stop(ReplayEnd::kDamaged, "a stereo pair does not decode: of another version?", message);
       }
-      stereo_read = true;
-      stereo_stamp = message.stamp;
+      stereo.note(message.stamp);
       return false;
     case RecordChannel::kTick: return take_tick(message);
     default: return false;  // lidar scans are not inputs of a tick yet
@@ -224,12 +219,12 @@ bool ReplayBoard::Impl::take_tick(const RecordMessage& message) {
          message);
     return false;
   }
-  if (tick.inputs.depth_fresh && !(depth_read && depth_stamp == tick.inputs.stamp)) {
+  if (depth.missing()) {
     stop(ReplayEnd::kGap, "the depth frame of tick " + std::to_string(granted) + " is missing",
          message);
     return false;
   }
-  if (tick.inputs.stereo_fresh && !(stereo_read && stereo_stamp == tick.inputs.stamp)) {
+  if (stereo.missing()) {
     stop(ReplayEnd::kGap, "the stereo pair of tick " + std::to_string(granted) + " is missing",
          message);
     return false;

@@ -99,6 +99,12 @@ Matrix3 mount_rotation(const robot::SensorMount& mount) {
   return rotation_z(rpy[2]) * rotation_y(rpy[1]) * rotation_x(rpy[0]);
 }
 
+Matrix3 optical_rotation(const robot::SensorMount& mount) {
+  Matrix3 rotation_XC;
+  rotation_XC << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return mount_rotation(mount) * rotation_XC;
+}
+
 Articulation::Articulation(dWorldID world, const robot::RobotModel& model, const StartPose& start,
                            double step_s)
     : model_(model), step_s_(step_s) {

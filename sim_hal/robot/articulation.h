@@ -24,6 +24,8 @@ Matrix3 rotation_x(double angle_rad);
 Matrix3 rotation_y(double angle_rad);
 Matrix3 rotation_z(double angle_rad);
 Matrix3 mount_rotation(const robot::SensorMount& mount);  // R_BX
+// R_BC: optical axes of a camera in that housing, right = -y, down = -z, forward = x.
+Matrix3 optical_rotation(const robot::SensorMount& mount);
 
 class Articulation {
  public:

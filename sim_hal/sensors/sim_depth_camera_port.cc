@@ -28,8 +28,7 @@ SimDepthCameraPort::SimDepthCameraPort(const robot::DepthCameraSpecification& sp
       mount_B_m_(specification.mount.position_B_m[0], specification.mount.position_B_m[1],
                  specification.mount.position_B_m[2]),
       random_(seed, kDepthStream),
-      latency_{static_cast<std::int64_t>(std::llround(noise.latency_s * 1e9))},
-      frames_(std::make_unique<std::array<hal::DepthFrame, kQueue>>()) {
+      queue_(noise.latency_s) {
   const double width = specification.width_px;
   const double height = specification.height_px;
   const double half_view = std::tan(specification.horizontal_view_rad / 2);
@@ -40,9 +39,7 @@ SimDepthCameraPort::SimDepthCameraPort(const robot::DepthCameraSpecification& sp
   intrinsics_.cx_px = (width - 1) / 2;
   intrinsics_.cy_px = (height - 1) / 2;
   disparity_m_px_ = specification.native_width_px / 2 / half_view * specification.baseline_m;
-  Matrix3 rotation_XC;  // optical axes in the housing: right = -y, down = -z, forward = x
-  rotation_XC << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  rotation_BC_ = mount_rotation(specification.mount) * rotation_XC;
+  rotation_BC_ = optical_rotation(specification.mount);
   const std::size_t pixels =
       static_cast<std::size_t>(specification.width_px) * specification.height_px;
   exact_.assign(pixels, kNoHit);
@@ -159,19 +156,7 @@ void SimDepthCameraPort::expose(TimeNs now, const Vector3& p_WB_m, const Matrix3
   }
   render(p_WC_m, rotation_WC);
   draw_patches();
-  if (waiting_ == kQueue) {
-    first_ = (first_ + 1) % kQueue;
-    --waiting_;
-    ++counters_.dropped;
-  }
-  // Gaps are what never came here; what a full queue loses is counted as dropped, once.
-  if (arrived_) counters_.gaps += sequence - expected_;
-  arrived_ = true;
-  expected_ = sequence + 1;
-  hal::DepthFrame& frame = (*frames_)[(first_ + waiting_) % kQueue];
-  ++waiting_;
-  frame.stamp = now;
-  frame.sequence = sequence;
+  hal::DepthFrame& frame = queue_.push(now, sequence);
   frame.intrinsics = intrinsics_;
   frame.depth_unit_m = static_cast<float>(kUnit_m);
   for (std::size_t v = 0; v < intrinsics_.height_px; ++v) {
@@ -179,22 +164,6 @@ void SimDepthCameraPort::expose(TimeNs now, const Vector3& p_WB_m, const Matrix3
       frame.depth[v * intrinsics_.width_px + u] = measure(u, v);
     }
   }
-}
-
-// Copies the pixels in use; the rest of `out` keeps what it held.
-Status SimDepthCameraPort::do_receive(hal::DepthFrame& out) {
-  if (waiting_ == 0) return Status::kUnavailable;
-  const hal::DepthFrame& frame = (*frames_)[first_];
-  if (frame.stamp + latency_ > now_) return Status::kUnavailable;
-  out.stamp = frame.stamp;
-  out.sequence = frame.sequence;
-  out.intrinsics = frame.intrinsics;
-  out.depth_unit_m = frame.depth_unit_m;
-  std::copy_n(frame.depth.begin(), frame.pixel_count(), out.depth.begin());
-  first_ = (first_ + 1) % kQueue;
-  --waiting_;
-  ++counters_.delivered;
-  return Status::kOk;
 }
 
 }  // namespace surefoot::sim

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "core/robot/robot_model.h"
 #include "hal/api/depth_camera_port.h"
 #include "sim_hal/sensors/capsule.h"
+#include "sim_hal/sensors/frame_queue.h"
 #include "sim_hal/simulator_config.h"
 #include "sim_hal/world/terrain_index.h"
 
@@ -43,7 +43,7 @@ class SimDepthCameraPort final : public hal::DepthCameraPort {
   void expose(TimeNs now, const Vector3& p_WB_m, const Matrix3& rotation_WB,
               std::span<const Capsule> robot_shapes_W);
   // Makes frames visible to receive() whose latency has passed.
-  void advance(TimeNs now) { now_ = now; }
+  void advance(TimeNs now) { queue_.advance(now); }
 
   const DepthCounters& depth_counters() const { return depth_counters_; }
   const hal::PinholeIntrinsics& intrinsics() const { return intrinsics_; }
@@ -59,8 +59,8 @@ class SimDepthCameraPort final : public hal::DepthCameraPort {
     int v1 = -1;
   };
 
-  Status do_receive(hal::DepthFrame& out) override;
-  hal::SensorCounters do_counters() const override { return counters_; }
+  Status do_receive(hal::DepthFrame& out) override { return queue_.receive(out); }
+  hal::SensorCounters do_counters() const override { return queue_.counters(); }
 
   void render(const Vector3& p_WC_m, const Matrix3& rotation_WC);
   void render_row(int v, const Vector3& p_WC_m, const Matrix3& rotation_WC);
@@ -78,21 +78,14 @@ class SimDepthCameraPort final : public hal::DepthCameraPort {
   Matrix3 rotation_BC_;
   double disparity_m_px_ = 0;  // native focal length times baseline: disparity = this / z
   Random random_;
-  TimeNs now_;
-  TimeNs latency_;
   std::uint64_t next_ = 1;  // next exposure at next_ / rate
   std::uint32_t sequence_ = 0;
-  std::uint32_t expected_ = 0;  // sequence number that follows the last arrival
-  bool arrived_ = false;
   std::array<Window, kMaxCapsules> windows_;
   std::size_t window_count_ = 0;
   std::vector<double> exact_;
   std::vector<double> patches_;
   std::size_t patches_wide_ = 0;
-  std::unique_ptr<std::array<hal::DepthFrame, kQueue>> frames_;  // ring
-  std::size_t first_ = 0;
-  std::size_t waiting_ = 0;
-  hal::SensorCounters counters_;
+  FrameQueue<hal::DepthFrame, kQueue> queue_;
   DepthCounters depth_counters_;
 };
 

@@ -61,13 +61,10 @@ SimStereoCameraPort::SimStereoCameraPort(const robot::StereoCameraSpecification&
       terrain_(terrain),
       pattern_(seed),
       random_(seed, kStereoStream),
-      latency_{static_cast<std::int64_t>(std::llround(config.latency_s * 1e9))},
-      frames_(std::make_unique<std::array<hal::StereoFrame, kQueue>>()) {
+      queue_(config.latency_s) {
   const robot::StereoCameraCalibration& calibration = specification.calibration;
   const auto& position = specification.mount.position_B_m;
-  Matrix3 rotation_XC;  // optical axes in the housing: right = -y, down = -z, forward = x
-  rotation_XC << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  left_.rotation_BC = mount_rotation(specification.mount) * rotation_XC;
+  left_.rotation_BC = optical_rotation(specification.mount);
   left_.p_BC_m = Vector3(position[0], position[1], position[2]);
   const Matrix3 R_VE = matrix_of(calibration.R_EV).transpose();
   const Vector3 p_EV_m(calibration.p_EV_m[0], calibration.p_EV_m[1], calibration.p_EV_m[2]);
@@ -165,23 +162,6 @@ void SimStereoCameraPort::render(const Eye& eye, const Vector3& p_WB_m, const Ma
   }
 }
 
-// Room for the newest pair; the oldest gives way.
-hal::StereoFrame& SimStereoCameraPort::place_in_queue(std::uint32_t sequence) {
-  if (waiting_ == kQueue) {
-    first_ = (first_ + 1) % kQueue;
-    --waiting_;
-    ++counters_.dropped;
-  }
-  // Gaps are what never came here; what a full queue loses is counted as dropped, once.
-  if (arrived_) counters_.gaps += sequence - expected_;
-  arrived_ = true;
-  expected_ = sequence + 1;
-  hal::StereoFrame& frame = (*frames_)[(first_ + waiting_) % kQueue];
-  ++waiting_;
-  frame.sequence = sequence;
-  return frame;
-}
-
 void SimStereoCameraPort::expose(TimeNs now, const Vector3& p_WB_m, const Matrix3& rotation_WB,
                                  std::span<const Capsule> robot_shapes_W) {
   triggered_ = false;
@@ -193,30 +173,12 @@ void SimStereoCameraPort::expose(TimeNs now, const Vector3& p_WB_m, const Matrix
     return;
   }
   ++image_counters_.exposures;
-  hal::StereoFrame& frame = place_in_queue(sequence);
-  frame.stamp = now;
+  hal::StereoFrame& frame = queue_.push(now, sequence);
   frame.width_px = specification_.calibration.width_px;
   frame.height_px = specification_.calibration.height_px;
   render(left_, p_WB_m, rotation_WB, robot_shapes_W, 1.0, 0.0, frame.left.data());
   render(right_, p_WB_m, rotation_WB, robot_shapes_W, config_.right_gain, config_.right_offset,
          frame.right.data());
-}
-
-// Copies the pixels in use; the rest of `out` keeps what it held.
-Status SimStereoCameraPort::do_receive(hal::StereoFrame& out) {
-  if (waiting_ == 0) return Status::kUnavailable;
-  const hal::StereoFrame& frame = (*frames_)[first_];
-  if (frame.stamp + latency_ > now_) return Status::kUnavailable;
-  out.stamp = frame.stamp;
-  out.sequence = frame.sequence;
-  out.width_px = frame.width_px;
-  out.height_px = frame.height_px;
-  std::copy_n(frame.left.begin(), frame.pixel_count(), out.left.begin());
-  std::copy_n(frame.right.begin(), frame.pixel_count(), out.right.begin());
-  first_ = (first_ + 1) % kQueue;
-  --waiting_;
-  ++counters_.delivered;
-  return Status::kOk;
 }
 
 }  // namespace surefoot::sim

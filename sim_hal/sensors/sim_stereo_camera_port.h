@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "core/robot/robot_model.h"
 #include "hal/api/stereo_camera_port.h"
 #include "sim_hal/sensors/capsule.h"
+#include "sim_hal/sensors/frame_queue.h"
 #include "sim_hal/sensors/surface_pattern.h"
 #include "sim_hal/simulator_config.h"
 #include "sim_hal/world/terrain_index.h"
@@ -42,7 +42,7 @@ class SimStereoCameraPort final : public hal::StereoCameraPort {
   void expose(TimeNs now, const Vector3& p_WB_m, const Matrix3& rotation_WB,
               std::span<const Capsule> robot_shapes_W);
   // Makes pairs visible to receive() whose latency has passed.
-  void advance(TimeNs now) { now_ = now; }
+  void advance(TimeNs now) { queue_.advance(now); }
 
   const StereoImageCounters& image_counters() const { return image_counters_; }
 
@@ -54,11 +54,10 @@ class SimStereoCameraPort final : public hal::StereoCameraPort {
   };
 
   Status do_trigger() override;
-  Status do_receive(hal::StereoFrame& out) override;
-  hal::SensorCounters do_counters() const override { return counters_; }
+  Status do_receive(hal::StereoFrame& out) override { return queue_.receive(out); }
+  hal::SensorCounters do_counters() const override { return queue_.counters(); }
 
   void set_up(const robot::StereoLens& lens, Eye& eye) const;
-  hal::StereoFrame& place_in_queue(std::uint32_t sequence);
   void cast(const Eye& eye, const Vector3& p_WC_m, const Matrix3& rotation_WC,
             std::span<const Capsule> shapes_W);
   double grey_at(std::size_t u, std::size_t v, const Vector3& p_WC_m) const;
@@ -74,18 +73,11 @@ class SimStereoCameraPort final : public hal::StereoCameraPort {
   Random random_;
   Eye left_;
   Eye right_;
-  TimeNs now_;
-  TimeNs latency_;
   bool triggered_ = false;
   std::uint32_t sequence_ = 0;
-  std::uint32_t expected_ = 0;  // sequence number that follows the last arrival
-  bool arrived_ = false;
   std::vector<Vector3> points_W_m_;  // what each pixel of the present picture sees
   std::vector<bool> hit_;
-  std::unique_ptr<std::array<hal::StereoFrame, kQueue>> frames_;  // ring
-  std::size_t first_ = 0;
-  std::size_t waiting_ = 0;
-  hal::SensorCounters counters_;
+  FrameQueue<hal::StereoFrame, kQueue> queue_;
   StereoImageCounters image_counters_;
 };
 

@@ -22,14 +22,20 @@ inline stereo::MatcherConfig recommended_matcher() {
   return config;
 }
 
+inline stereo::DisparityNoise recommended_noise() {
+  stereo::DisparityNoise noise;
+  noise.disparity_floor_px = 0.08;
+  noise.grey_noise = 4.5;
+  noise.relief_share = 0.15;
+  return noise;
+}
+
 inline stereo::PointConfig recommended_points() {
   stereo::PointConfig config;
   config.stride = 1;
   config.min_range_m = 0.1;
   config.max_range_m = 3.0;
-  config.disparity_floor_px = 0.08;
-  config.grey_noise = 4.5;
-  config.relief_share = 0.15;
+  config.noise = recommended_noise();
   return config;
 }
 

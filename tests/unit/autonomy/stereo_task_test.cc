@@ -39,9 +39,7 @@ StereoConfig config() {
   config.matcher = tests::recommended_matcher();
   config.matcher.disparities = 48;
   config.least_valid_share = 0.2;
-  config.disparity_floor_px = 0.08;
-  config.grey_noise = 4.5;
-  config.relief_share = 0.15;
+  config.noise = tests::recommended_noise();
   return config;
 }
 

@@ -123,15 +123,20 @@ PlaneErrors compare_with_plane(const Scene& scene) {
   return errors;
 }
 
+PlaneErrors shoot_and_compare(Scene& scene) {
+  scene.shoot(milliseconds(10));
+  EXPECT_TRUE(scene.receive());
+  const PlaneErrors errors = compare_with_plane(scene);
+  std::printf("valid %.3f, wrong %.4f, mean %.3f px, rms %.3f px\n", errors.valid, errors.wrong,
+              errors.mean_px, errors.rms_px);
+  return errors;
+}
+
 TEST(SimStereoCamera, ItsPicturesAreThoseOfTheGround) {
   Scene scene;
-  scene.shoot(milliseconds(10));
-  ASSERT_TRUE(scene.receive());
+  const PlaneErrors errors = shoot_and_compare(scene);
   EXPECT_EQ(scene.frame->width_px, 320);
   EXPECT_EQ(scene.frame->height_px, 240);
-  const PlaneErrors errors = compare_with_plane(scene);
-  std::printf("clear: valid %.3f, wrong %.4f, mean %.3f px, rms %.3f px\n", errors.valid,
-              errors.wrong, errors.mean_px, errors.rms_px);
   EXPECT_GT(errors.valid, 0.85);
   EXPECT_LT(errors.wrong, 0.01);
   EXPECT_LT(std::fabs(errors.mean_px), 0.05);
@@ -144,11 +149,7 @@ TEST(SimStereoCamera, NoiseAndExposureLeaveThemUsable) {
   config.right_gain = 1.06;
   config.right_offset = 3;
   Scene scene(config);
-  scene.shoot(milliseconds(10));
-  ASSERT_TRUE(scene.receive());
-  const PlaneErrors errors = compare_with_plane(scene);
-  std::printf("noisy: valid %.3f, wrong %.4f, mean %.3f px, rms %.3f px\n", errors.valid,
-              errors.wrong, errors.mean_px, errors.rms_px);
+  const PlaneErrors errors = shoot_and_compare(scene);
   EXPECT_GT(errors.valid, 0.8);
   EXPECT_LT(errors.wrong, 0.02);
   EXPECT_LT(std::fabs(errors.mean_px), 0.05);
@@ -159,9 +160,7 @@ TEST(SimStereoCamera, GroundWithoutAPatternGivesNextToNothing) {
   StereoImageConfig config = clear_pictures();
   config.texture = 0;
   Scene scene(config);
-  scene.shoot(milliseconds(10));
-  ASSERT_TRUE(scene.receive());
-  EXPECT_LT(compare_with_plane(scene).valid, 0.05);
+  EXPECT_LT(shoot_and_compare(scene).valid, 0.05);
 }
 
 TEST(SimStereoCamera, SeesTheRobotsOwnLegs) {

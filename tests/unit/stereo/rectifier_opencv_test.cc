@@ -239,7 +239,7 @@ TEST(Points, LieWhereTheyWereSeen) {
   Random random(9);
   auto disparities = std::make_unique<DisparityImage>();
   auto cloud = std::make_unique<PointCloud>();
-  const PointConfig config{1, 0.1, 10.0, 0.1, 5.0};
+  const PointConfig config{1, 0.1, 10.0, {0.1, 5.0, 0.0}};
   for (int i = 0; i < 200; ++i) {
     const StereoCalibration cameras = calibration(static_cast<std::uint64_t>(i));
     RectifiedPair pair;
@@ -284,7 +284,7 @@ TEST(Points, BoundsAndBadInput) {
   disparities->width_px = 640;
   disparities->height_px = 480;
   disparities->values.fill(50 * kSubpixels);  // 1 m
-  PointConfig config{1, 0.1, 10.0, 0.1, 5.0};
+  PointConfig config{1, 0.1, 10.0, {0.1, 5.0, 0.0}};
   EXPECT_EQ(make_points(*disparities, pair, config, *cloud), Status::kExhausted);
   EXPECT_EQ(cloud->size(), kMaxPoints);
   config.stride = 2;
