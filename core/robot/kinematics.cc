@@ -5,6 +5,8 @@
 namespace surefoot::robot {
 namespace {
 
+constexpr double kReachMargin_m = 1e-3;  // keeps the knee off its singularity
+
 // Distance from the abduction axis to the leg's plane, signed outwards.
 double lateral_offset_m(const RobotModel& model, std::size_t leg) {
   return left_sign(leg) * (model.hip_offset_m + model.knee_offset_m);
@@ -70,7 +72,6 @@ Vector3 shank_angular_velocity_B(const LegVector& q_rad, const LegVector& qd_rad
 }
 
 LegSolution solve_leg(const RobotModel& model, std::size_t leg, const Vector3& p_B_m) {
-  constexpr double kReachMargin_m = 1e-3;  // keeps the knee off its singularity
   Status status = Status::kOk;
   const Vector3 p = p_B_m - abduction_joint_B_m(model, leg);
   const double offset = lateral_offset_m(model, leg);
@@ -87,8 +88,7 @@ LegSolution solve_leg(const RobotModel& model, std::size_t leg, const Vector3& p
   const double thigh = model.thigh_length_m;
   const double shank = model.shank_length_m;
   const double max_reach = thigh + shank - kReachMargin_m;
-  const double difference = thigh - shank;
-  const double min_reach = (difference < 0.0 ? -difference : difference) + kReachMargin_m;
+  const double min_reach = math::magnitude(thigh - shank) + kReachMargin_m;
   const double distance = math::sqrt(p[0] * p[0] + depth * depth);
   const double reach = math::clamp(distance, min_reach, max_reach);
   if (reach != distance) status = Status::kOutOfRange;
@@ -99,6 +99,17 @@ LegSolution solve_leg(const RobotModel& model, std::size_t leg, const Vector3& p
   const double hip =
       math::atan2(p[0], depth) - math::atan2(shank * bend.sin, thigh + shank * bend.cos);
   return {{math::wrap_angle(abad), hip, knee}, status};
+}
+
+bool can_reach(const RobotModel& model, std::size_t leg, const Vector3& p_B_m, double margin_m) {
+  const Vector3 p = p_B_m - abduction_joint_B_m(model, leg);
+  const double offset_m2 = math::square(lateral_offset_m(model, leg));
+  if (p[1] * p[1] + p[2] * p[2] < offset_m2) return false;
+  const double inset_m = kReachMargin_m + margin_m;
+  const double longest_m = model.thigh_length_m + model.shank_length_m - inset_m;
+  const double shortest_m = math::magnitude(model.thigh_length_m - model.shank_length_m) + inset_m;
+  const double reach_m2 = p.squaredNorm() - offset_m2;
+  return longest_m > 0 && reach_m2 >= shortest_m * shortest_m && reach_m2 <= longest_m * longest_m;
 }
 
 }  // namespace surefoot::robot

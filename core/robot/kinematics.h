@@ -39,6 +39,9 @@ struct LegSolution {
   Status status;
 };
 LegSolution solve_leg(const RobotModel& model, std::size_t leg, const Vector3& p_B_m);
+// Whether solve_leg() would reach p_B_m with `margin_m` left to either end of the shell: some 20
+// flops, no angle.
+bool can_reach(const RobotModel& model, std::size_t leg, const Vector3& p_B_m, double margin_m);
 
 // Abduction joint and, outwards from it, the hip joint with the abduction angle at zero, in B [m].
 Vector3 abduction_joint_B_m(const RobotModel& model, std::size_t leg);

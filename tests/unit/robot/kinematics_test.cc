@@ -86,6 +86,33 @@ TEST(Kinematics, ATargetOnTheAbductionAxisStillGivesFiniteAngles) {
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(std::isfinite(solution.q_rad[i]));
 }
 
+TEST(Kinematics, CanReachWhatTheSolverReaches) {
+  const RobotModel model = little_dog();
+  Random random(6);
+  int reached = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const std::size_t leg = random.below(4);
+    Vector3 p = hip_joint_B_m(model, leg);
+    for (int i = 0; i < 3; ++i) p[i] += random.uniform(-0.15, 0.15);
+    const bool solved = solve_leg(model, leg, p).status == Status::kOk;
+    EXPECT_EQ(can_reach(model, leg, p, 0.0), solved) << p.transpose();
+    reached += solved ? 1 : 0;
+  }
+  EXPECT_GT(reached, 2000);
+}
+
+TEST(Kinematics, AMarginOfReachIsLeftAtBothEnds) {
+  const RobotModel model = little_dog();
+  const Vector3 hip = hip_joint_B_m(model, kHindLeft);
+  const auto reach = [&](double depth_m) {
+    return can_reach(model, kHindLeft, hip - Vector3(0.0, 0.0, depth_m), 0.01);
+  };
+  EXPECT_FALSE(reach(0.1661 + 1e-6));  // 0.1771 less 1 mm less the margin
+  EXPECT_TRUE(reach(0.1661 - 1e-6));
+  EXPECT_TRUE(reach(0.0379 + 1e-6));  // 0.0269 and as much
+  EXPECT_FALSE(reach(0.0379 - 1e-6));
+}
+
 // A robot whose hind legs mirror the front ones.
 TEST(Kinematics, HindLegsMirrorTheFrontOnesWhereTheirKneesPointForward) {
   const RobotModel model = little_dog();
