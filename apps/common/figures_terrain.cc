@@ -286,6 +286,7 @@ FootholdCounts draw_footholds(Drawing& drawing, const std::vector<Touchdown>& to
     const Point to = axes.at(chosen[0], chosen[1]);
     switch (touchdown.reason) {
       case control::FootholdReason::kMoved:
+      case control::FootholdReason::kPlanned:
         ++counts.moved;
         if (!visible) break;
         drawing.line(axes.at(nominal[0], nominal[1]), to, {palette::kInk, 1.2, false});

@@ -307,7 +307,7 @@ void Autonomy::walk(const estimation::RobotState& state) {
   if (walks_statically()) {
     const control::WalkCommand command = walk_command(state);
     commands_ =
-        static_walk_.update(state, window(), command.velocity,
+        static_walk_.update(state, window(), nullptr, command.velocity,
                             command.gait != control::GaitKind::kStand, command.ground, tick_s_);
     return;
   }

@@ -6,6 +6,7 @@
 #include "core/base/fixed_vector.h"
 #include "core/base/parameters.h"
 #include "core/control/whole_body_config.h"
+#include "core/planning/footstep_config.h"
 #include "core/robot/robot_model.h"
 
 namespace surefoot::control {
@@ -232,6 +233,7 @@ struct ControlConfig {
   MpcConfig mpc;
   WholeBodyConfig whole_body;
   StaticWalkConfig static_walk;
+  planning::FootstepConfig footsteps;  // of the static walk on filled terrain
   StandUpConfig stand_up;
   RecoveryConfig recovery;
 
@@ -244,6 +246,7 @@ struct ControlConfig {
     visit.group("mpc", self.mpc);
     visit.group("whole_body", self.whole_body);
     visit.group("static_walk", self.static_walk);
+    visit.group("footsteps", self.footsteps);
     visit.group("stand_up", self.stand_up);
     visit.group("recovery", self.recovery);
   }

@@ -2,7 +2,7 @@
 
 #include "core/mapping/foothold.h"
 #include "core/math/elementary.h"
-#include "core/robot/kinematics.h"
+#include "core/planning/stance.h"
 
 namespace surefoot::control {
 namespace {
@@ -17,9 +17,7 @@ bool classed(const mapping::MapWindow& window, const Vector3& place_O_m) {
 
 Vector3 stance_hip_B_m(const robot::RobotModel& model, const FootholdConfig& config,
                        std::size_t leg) {
-  Vector3 hip_B = robot::hip_joint_B_m(model, leg);
-  hip_B[1] += robot::left_sign(leg) * config.lateral_offset_m;
-  return hip_B;
+  return planning::stance_hip_B_m(model, config.lateral_offset_m, leg);
 }
 
 void FootholdPlanner::reset(const FootholdConfig& config, const robot::RobotModel& model) {

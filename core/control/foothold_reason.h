@@ -12,6 +12,7 @@ enum class FootholdReason : std::uint8_t {
   kUnseen,       // the Raibert point on ground that nobody saw, which is allowed
   kMapOff,       // mapping disabled: the Raibert point, unchecked
   kForced,       // bad ground, but a leg that stayed down would be dragged out of reach
+  kPlanned,      // the first of the steps planned on the filled terrain
 };
 
 }  // namespace surefoot::control

@@ -12,28 +12,19 @@
 namespace surefoot::control {
 namespace {
 
-// Legs of one side follow each other, the hind one first: its step brings the foot to where the
-// front one leaves, and both steps have most of their triangles in common.
-constexpr std::array<std::size_t, robot::kLegs> kOrder{robot::kHindRight, robot::kFrontRight,
-                                                       robot::kHindLeft, robot::kFrontLeft};
-// The feet stand -1/2, -1/4, 0, 1/4 of a stride off their hips when a leg's turn comes: their mean
-// lags by 1/8, and the foot goes to 1/2 of a stride ahead.
-constexpr double kLandingStrides = 0.625;
 constexpr double kFeelsGround = 0.5;     // of a swing: before, the toe has caught on something
 constexpr double kShortestShift = 0.25;  // of shift_s: the load still goes from foot to foot
 constexpr double kMaxHeadingLag_rad = 0.15;
-
-Vector2 heading(double yaw_rad, double forward, double left) {
-  const math::SinCos yaw = math::sin_cos(yaw_rad);
-  return {yaw.cos * forward - yaw.sin * left, yaw.sin * forward + yaw.cos * left};
-}
 
 }  // namespace
 
 void StaticWalk::reset(const ControlConfig& config, const robot::RobotModel& model) {
   config_ = config;
   model_ = model;
+  shape_ = {config.body.height_m, config.body.slope_share, config.foothold.lateral_offset_m,
+            config.static_walk.margin_m};
   footholds_.reset(config.foothold, model);
+  footsteps_.reset(config.footsteps, model, shape_);
   map_offset_.reset(config.foothold.max_map_offset_m, model.foot_radius_m);
   whole_body_.reset(config.whole_body, model);
   stand();
@@ -73,14 +64,16 @@ void StaticWalk::start(const estimation::RobotState& state) {
   duration_s_ = config_.static_walk.shift_s;
 }
 
-std::size_t StaticWalk::leg() const { return kOrder[turn_]; }
-std::size_t StaticWalk::next_leg() const { return kOrder[(turn_ + 1) % robot::kLegs]; }
+std::size_t StaticWalk::leg() const { return planning::step_leg(turn_); }
 
 const actuation::JointCommands& StaticWalk::update(const estimation::RobotState& state,
                                                    const mapping::MapWindow* window,
+                                                   const terrain::TerrainMap* terrain,
                                                    const VelocityCommand& velocity, bool walking,
-                                                   GroundRule ground, double step_s) {
-  map_offset_.update(state, legs_, window);
+                                                   GroundRule rule, double step_s) {
+  const bool filled = terrain != nullptr && terrain->ground.cell_size_m > 0;
+  const Ground ground{filled ? &terrain->ground : window, filled ? terrain : nullptr, rule};
+  map_offset_.update(state, legs_, ground.window);
   shifted_ = false;
   progress_ = math::clamp(progress_ + step_s / duration_s_, 0.0, 1.0);
   follow(velocity, step_s);
@@ -93,14 +86,14 @@ const actuation::JointCommands& StaticWalk::update(const estimation::RobotState&
     case Stage::kStand:
       if (!walking) {
         blocked_s_ = 0;
-      } else if (!begin_step(state, window, ground)) {
+      } else if (!begin_step(state, ground)) {
         blocked_s_ += step_s;
       }
       break;
     case Stage::kShift:
       load_[leg()] = 1.0 - quintic(progress_).value;
       shifted_ = progress_ >= 1.0;
-      if (shifted_) lift(state, window);
+      if (shifted_) lift(state, ground.window);
       break;
     case Stage::kSwing: swing(state, step_s); break;
   }
@@ -122,25 +115,18 @@ void StaticWalk::follow(const VelocityCommand& velocity, double step_s) {
   velocity_.yaw_rate_rad_s += share * (velocity.yaw_rate_rad_s - velocity_.yaw_rate_rad_s);
 }
 
-// Where the Raibert rule is for a trot, this is for a crawl: from where the feet stand to half a
-// stride ahead of the hip.
-Vector3 StaticWalk::nominal_O_m() const {
-  Vector2 stride = heading(yaw_rad_, velocity_.forward_m_s, velocity_.left_m_s) * cycle_s();
+// Way of the trunk per four steps.
+Vector2 StaticWalk::stride_O_m() const {
+  const Vector2 stride =
+      planning::from_heading(yaw_rad_, velocity_.forward_m_s, velocity_.left_m_s) * cycle_s();
   const double length_m = stride.norm();
   const double longest_m = config_.static_walk.max_stride_m;
-  if (length_m > longest_m) stride *= longest_m / length_m;
-  Vector2 middle = Vector2::Zero();  // of the hips, by the feet
-  for (std::size_t i = 0; i < robot::kLegs; ++i) {
-    middle += (feet_O_m_[i].head<2>() - hip_O_m(i)) / static_cast<double>(robot::kLegs);
-  }
-  const Vector2 place = middle + hip_O_m(leg()) + kLandingStrides * stride;
-  return {place[0], place[1], feet_O_m_[leg()][2]};
+  return length_m > longest_m ? Vector2(stride * (longest_m / length_m)) : stride;
 }
 
-// From the middle of the hips, axes of O.
-Vector2 StaticWalk::hip_O_m(std::size_t leg) const {
-  const Vector3 hip_B = stance_hip_B_m(model_, config_.foothold, leg);
-  return heading(yaw_rad_, hip_B[0], hip_B[1]);
+Vector3 StaticWalk::nominal_O_m() const {
+  const planning::Hips hips = planning::stance_hips_O_m(model_, shape_.lateral_offset_m, yaw_rad_);
+  return planning::nominal_place_O_m(feet_O_m_, hips, leg(), stride_O_m());
 }
 
 // Where the feet are is where they stand from now on.
@@ -149,15 +135,31 @@ void StaticWalk::take_feet(const estimation::RobotState& state) {
 }
 
 // false: there is no foothold.
-bool StaticWalk::begin_step(const estimation::RobotState& state, const mapping::MapWindow* window,
-                            GroundRule ground) {
+bool StaticWalk::begin_step(const estimation::RobotState& state, const Ground& ground) {
   take_feet(state);
   LegStatus& status = legs_[leg()];
-  status.foothold = footholds_.choose(nominal_O_m(), window, ground, map_offset_.offset_m());
+  status.foothold = choose_foothold(ground);
   if (status.foothold.reason == FootholdReason::kNone) return false;
   blocked_s_ = 0;
   begin_shift(state);
   return true;
+}
+
+Foothold StaticWalk::choose_foothold(const Ground& ground) {
+  if (ground.terrain != nullptr) return plan_foothold(*ground.terrain);
+  return footholds_.choose(nominal_O_m(), ground.window, ground.rule, map_offset_.offset_m());
+}
+
+Foothold StaticWalk::plan_foothold(const terrain::TerrainMap& terrain) {
+  const planning::FootstepProblem problem{feet_O_m_, turn_, stride_O_m(), yaw_rad_,
+                                          map_offset_.offset_m()};
+  planning::FootstepPlan plan;
+  if (!ok(footsteps_.plan(problem, terrain, plan))) {
+    const Vector3 nominal = nominal_O_m();
+    return {nominal, nominal, FootholdReason::kNone};
+  }
+  const planning::Footstep& first = plan.steps[0];
+  return {first.nominal_O_m, first.position_O_m, FootholdReason::kPlanned};
 }
 
 void StaticWalk::begin_shift(const estimation::RobotState& state) {
@@ -170,24 +172,15 @@ void StaticWalk::begin_shift(const estimation::RobotState& state) {
   stage_ = Stage::kShift;
 }
 
-// The trunk's pose for the step under way: over the feet, along the plane through them.
+// The trunk's pose for the step under way.
 void StaticWalk::plan_pose(const estimation::RobotState& state) {
-  std::array<Vector3, robot::kLegs> feet = feet_O_m_;
-  feet[leg()] = legs_[leg()].foothold.position_O_m;
-  Vector3 mean = Vector3::Zero();
-  double front_m = 0;  // higher than the hind ones
-  double left_m = 0;
-  for (std::size_t i = 0; i < robot::kLegs; ++i) {
-    mean += feet[i] / static_cast<double>(robot::kLegs);
-    front_m += 0.5 * robot::front_sign(i) * feet[i][2];
-    left_m += 0.5 * robot::left_sign(i) * feet[i][2];
-  }
-  const Vector3 hip_B = robot::hip_joint_B_m(model_, robot::kFrontLeft);
-  const double share = config_.body.slope_share;
-  to_.roll_pitch_yaw_rad = {share * math::atan2(left_m, 2.0 * hip_B[1]),
-                            -share * math::atan2(front_m, 2.0 * hip_B[0]), yaw_rad_};
-  to_.height_O_m = mean[2] - model_.foot_radius_m + config_.body.height_m;
-  to_.centre_O_m = place_centre(mean.head<2>());
+  planning::Feet landed = feet_O_m_;
+  landed[leg()] = legs_[leg()].foothold.position_O_m;
+  to_ = planning::trunk_over(model_, shape_, landed, yaw_rad_);
+  const planning::CentrePlace centre =
+      planning::place_centre(feet_O_m_, landed, turn_, shape_.margin_m, to_.centre_O_m);
+  if (centre.narrow) ++counters_.narrow;
+  to_.centre_O_m = centre.place_O_m;
   // Lower where a leg could not reach.
   constexpr int kTries = 6;
   constexpr double kStep_m = 0.006;
@@ -207,35 +200,6 @@ bool StaticWalk::reachable(const estimation::RobotState& state) const {
   }
   const Vector3 landing_B = R_BO * (legs_[leg()].foothold.position_O_m - p_OB_m);
   return ok(robot::solve_leg(model_, leg(), landing_B).status);
-}
-
-// Into the triangle of this step and, where that leaves room, of the next as well.
-Vector2 StaticWalk::place_centre(const Vector2& wanted_O_m) {
-  Triangle now;
-  Triangle next;
-  std::size_t corners = 0;
-  std::size_t next_corners = 0;
-  for (std::size_t i = 0; i < robot::kLegs; ++i) {
-    if (i != leg()) now.corners_O_m[corners++] = feet_O_m_[i].head<2>();
-    if (i == next_leg()) continue;
-    next.corners_O_m[next_corners++] = i == leg()
-                                           ? Vector2(legs_[i].foothold.position_O_m.head<2>())
-                                           : Vector2(feet_O_m_[i].head<2>());
-  }
-  const double margin_m = config_.static_walk.margin_m;
-  SupportRegion both;
-  if (ok(both.add(now, margin_m)) && ok(both.add(next, margin_m))) {
-    const Result<Vector2> place = both.nearest(wanted_O_m);
-    if (place.ok()) return place.value();
-  }
-  SupportRegion one;
-  const double room_m = now.inradius_m();
-  if (room_m < margin_m) ++counters_.narrow;
-  constexpr double kOfRoom = 0.95;  // leaves a small triangle, not a point
-  const double kept_m = room_m < margin_m ? kOfRoom * room_m : margin_m;
-  if (!ok(one.add(now, kept_m))) return wanted_O_m;
-  const Result<Vector2> place = one.nearest(wanted_O_m);
-  return place.ok() ? place.value() : wanted_O_m;
 }
 
 void StaticWalk::lift(const estimation::RobotState& state, const mapping::MapWindow* window) {

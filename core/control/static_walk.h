@@ -1,7 +1,8 @@
 // Walking with one leg in the air at a time and the centre of mass over the feet that stand
 // (paper 001, section IV): for ground where every foot has to be placed.
 //
-// In: the estimator's RobotState, the published map window (or none), a velocity command.
+// In: the estimator's RobotState, the published map window (or none), the filled terrain (or
+// none), a velocity command.
 // Out: twelve joint commands for this tick, and for each leg what it is about.
 //
 // Legs step in the order hind right, front right, hind left, front left. Each step:
@@ -9,12 +10,14 @@
 //          have room in common, into that of the next step, so that this one needs no shift
 //   swing  the foot goes up, over and down to its foothold; then straight down until it feels
 //          ground
+// Footholds: with filled terrain the first step of a plan of four (planning/footsteps.h), made anew
+// for every step; without it the nearest good cell (foothold.h).
 // A foot that finds no ground goes back to where it came from and the step is planned anew. When a
 // standing foot slips, the one in the air comes down where it is.
 // Without a foothold the robot stands and blocked_s() counts.
 //
-// Frames: O, metres, N. Memory: sizeof(StaticWalk) 27 kB, most of it WholeBody. Cost per tick: one
-// whole-body solve, at most one foothold search. No allocation.
+// Frames: O, metres, N. Memory: sizeof(StaticWalk) 97 kB, most of it the search for footsteps.
+// Cost per tick: one whole-body solve, at most one foothold search or plan. No allocation.
 #pragma once
 
 #include <array>
@@ -24,11 +27,13 @@
 #include "core/control/foothold.h"
 #include "core/control/leg_status.h"
 #include "core/control/map_offset.h"
-#include "core/control/support_region.h"
 #include "core/control/whole_body.h"
 #include "core/estimation/contact.h"
 #include "core/estimation/estimator.h"
 #include "core/mapping/map_window.h"
+#include "core/planning/footsteps.h"
+#include "core/planning/stance.h"
+#include "core/terrain/terrain_map.h"
 
 namespace surefoot::control {
 
@@ -58,8 +63,11 @@ class StaticWalk {
   void start(const estimation::RobotState& state);
 
   // walking: whether new steps may begin; a step under way is finished at any rate.
+  // terrain: takes the window's place where it is given and was published. It needs no GroundRule:
+  // footsteps never go to ground without a height.
   const actuation::JointCommands& update(const estimation::RobotState& state,
                                          const mapping::MapWindow* window,
+                                         const terrain::TerrainMap* terrain,
                                          const VelocityCommand& velocity, bool walking,
                                          GroundRule ground, double step_s);
 
@@ -78,33 +86,32 @@ class StaticWalk {
  private:
   enum class Stage : std::uint8_t { kStand = 0, kShift, kSwing };
 
-  // Of the trunk: the centre of mass, the height of B's origin, roll, pitch, yaw.
-  struct Pose {
-    Vector2 centre_O_m = Vector2::Zero();
-    double height_O_m = 0;
-    Vector3 roll_pitch_yaw_rad = Vector3::Zero();
-  };
-
   struct Motion {
-    Pose pose;
+    planning::TrunkPose pose;
     Vector3 v_O_m_s = Vector3::Zero();
     Vector3 a_O_m_s2 = Vector3::Zero();
     double yaw_rate_rad_s = 0;
   };
 
+  // What the feet are set on.
+  struct Ground {
+    const mapping::MapWindow* window = nullptr;    // the terrain's where there is one
+    const terrain::TerrainMap* terrain = nullptr;  // null: none
+    GroundRule rule = GroundRule::kGood;           // of the window
+  };
+
   std::size_t leg() const;  // whose turn it is
-  std::size_t next_leg() const;
   void stand();
   void take_feet(const estimation::RobotState& state);
-  bool begin_step(const estimation::RobotState& state, const mapping::MapWindow* window,
-                  GroundRule ground);
+  bool begin_step(const estimation::RobotState& state, const Ground& ground);
+  Foothold choose_foothold(const Ground& ground);
+  Foothold plan_foothold(const terrain::TerrainMap& terrain);
   void begin_shift(const estimation::RobotState& state);
+  Vector2 stride_O_m() const;
   Vector3 nominal_O_m() const;
   double cycle_s() const;
   void follow(const VelocityCommand& velocity, double step_s);
-  Vector2 hip_O_m(std::size_t leg) const;
   void plan_pose(const estimation::RobotState& state);
-  Vector2 place_centre(const Vector2& wanted_O_m);
   bool reachable(const estimation::RobotState& state) const;
   Motion pose_now() const;
   Vector2 centre_offset_O_m(const estimation::RobotState& state) const;
@@ -122,7 +129,9 @@ class StaticWalk {
 
   ControlConfig config_;
   robot::RobotModel model_;
+  planning::StanceShape shape_;
   FootholdPlanner footholds_;
+  planning::FootstepPlanner footsteps_;
   MapOffset map_offset_;
   WholeBody whole_body_;
   Stage stage_ = Stage::kStand;
@@ -130,12 +139,12 @@ class StaticWalk {
   bool shifted_ = false;   // the shift ended in this tick
   double progress_ = 0;    // of the shift
   double duration_s_ = 1;  // of the shift
-  Pose from_;
-  Pose to_;
-  std::array<Vector3, robot::kLegs> feet_O_m_;  // where the feet stand, the step's landing included
-  std::array<double, robot::kLegs> load_{};     // share of the load that a foot may carry, 0 to 1
-  VelocityCommand velocity_;                    // its mean over about a cycle
-  double yaw_rad_ = 0;                          // the heading to keep
+  planning::TrunkPose from_;
+  planning::TrunkPose to_;
+  planning::Feet feet_O_m_;                  // where the feet stand, the step's landing included
+  std::array<double, robot::kLegs> load_{};  // share of the load that a foot may carry, 0 to 1
+  VelocityCommand velocity_;                 // its mean over about a cycle
+  double yaw_rad_ = 0;                       // the heading to keep
   double blocked_s_ = 0;
   LegStatuses legs_;
   StaticWalkCounters counters_;

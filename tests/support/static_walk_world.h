@@ -7,6 +7,7 @@
 #include "core/control/static_walk.h"
 #include "core/robot/dynamics.h"
 #include "core/robot/kinematics.h"
+#include "tests/support/footstep_parts.h"
 #include "tests/support/little_dog.h"
 
 namespace surefoot::tests {
@@ -32,6 +33,7 @@ inline control::ControlConfig static_walk_config() {
                    .max_stride_m = 0.12,
                    .margin_m = 0.02,
                    .slip_m = 0.012};
+  c.footsteps = footstep_config();
   c.whole_body.friction = 0.4;
   c.whole_body.max_normal_N = 40;
   c.whole_body.position_gain_1_s2 = {100, 100, 100};
@@ -66,9 +68,11 @@ class StaticWalkWorld {
 
   // One tick; legs that stand carry the trunk.
   void tick(const control::VelocityCommand& velocity, bool walking,
-            const mapping::MapWindow* window = nullptr) {
-    const actuation::JointCommands& commands = walk->update(
-        state, window, velocity, walking, control::GroundRule::kGoodOrUnseen, kStaticWalkTick_s);
+            const mapping::MapWindow* window = nullptr,
+            const terrain::TerrainMap* terrain = nullptr) {
+    const actuation::JointCommands& commands =
+        walk->update(state, window, terrain, velocity, walking, control::GroundRule::kGoodOrUnseen,
+                     kStaticWalkTick_s);
     const Vector3 before = state.p_OB_m;
     Vector3 trunk = Vector3::Zero();
     double standing = 0;

@@ -22,17 +22,17 @@ TEST(StaticWalk, KeepsTheCentreOfMassOverTheStandingFeetByTheMargin) {
     world.tick(forward(0.06), true);
     ASSERT_LE(world.in_the_air(), 1);
     if (world.in_the_air() == 0) continue;
-    Triangle triangle;
+    planning::Triangle triangle;
     std::size_t corners = 0;
     for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
       if (world.walk->legs()[leg].mode != LegMode::kStance) continue;
       triangle.corners_O_m[corners++] = world.state.feet[leg].p_O_m.head<2>();
     }
-    SupportRegion region;
+    planning::SupportRegion region;
     ASSERT_EQ(region.add(triangle, 0.0), Status::kOk);
     ASSERT_TRUE(region.contains(world.centre_O_m())) << "tick " << i;
     for (double margin_m = 0.002; margin_m < 0.03; margin_m += 0.001) {
-      SupportRegion drawn_in;
+      planning::SupportRegion drawn_in;
       ASSERT_EQ(drawn_in.add(triangle, margin_m), Status::kOk);
       if (drawn_in.contains(world.centre_O_m())) continue;
       least_m = std::min(least_m, margin_m);
@@ -156,6 +156,54 @@ TEST(StaticWalk, StandsAndCountsWhereNoFootholdIs) {
   EXPECT_EQ(world.in_the_air(), 0);
   world.tick(forward(0.06), false, window.get());
   EXPECT_EQ(world.walk->blocked_s(), 0.0);
+}
+
+// Filled terrain with a costly band across the way: feet step before and behind it.
+TEST(StaticWalk, OnFilledTerrainItsFeetAvoidACostlyBand) {
+  constexpr double kBand_m[2] = {0.15, 0.19};
+  const auto map = tests::terrain_of([](mapping::CellIndex i) {
+    return tests::GroundCell{.cost = i.ix >= 15 && i.ix < 19 ? 0.6 : 0.0};
+  });
+  const auto touchdowns_in_band = [&](const terrain::TerrainMap* terrain) {
+    StaticWalkWorld world;
+    std::uint64_t steps = 0;
+    int inside = 0;
+    for (int i = 0; i < 20000 && world.state.p_OB_m[0] < 0.32; ++i) {
+      world.tick(forward(0.06), true, &map->ground, terrain);
+      if (world.walk->counters().steps == steps) continue;
+      steps = world.walk->counters().steps;
+      for (const estimation::FootState& foot : world.state.feet) {
+        inside += foot.p_O_m[0] > kBand_m[0] && foot.p_O_m[0] < kBand_m[1] ? 1 : 0;
+      }
+    }
+    EXPECT_GE(world.state.p_OB_m[0], 0.32);
+    return inside;
+  };
+  EXPECT_GT(touchdowns_in_band(nullptr), 0);
+  EXPECT_EQ(touchdowns_in_band(map.get()), 0);
+}
+
+TEST(StaticWalk, FilledTerrainTakesTheWindowsPlaceOnceItIsThere) {
+  StaticWalkWorld world;
+  const auto map = tests::flat_terrain();
+  const auto unpublished = std::make_unique<terrain::TerrainMap>();
+  world.tick(forward(0.06), true, &map->ground, unpublished.get());
+  const LegStatus& first = world.walk->legs()[robot::kHindRight];
+  EXPECT_EQ(first.foothold.reason, FootholdReason::kNominal);
+  StaticWalkWorld filled;
+  filled.tick(forward(0.06), true, nullptr, map.get());
+  EXPECT_EQ(filled.walk->legs()[robot::kHindRight].foothold.reason, FootholdReason::kPlanned);
+  EXPECT_EQ(filled.walk->legs()[robot::kHindRight].foothold.position_O_m,
+            first.foothold.position_O_m);
+}
+
+TEST(StaticWalk, StandsAndCountsWhereNoFootstepIsFound) {
+  StaticWalkWorld world;
+  const auto unknown =
+      tests::terrain_of([](mapping::CellIndex) { return tests::GroundCell{.known = false}; });
+  for (int i = 0; i < 500; ++i) world.tick(forward(0.06), true, nullptr, unknown.get());
+  EXPECT_NEAR(world.walk->blocked_s(), 1.0, 0.01);
+  EXPECT_EQ(world.walk->counters().steps, 0U);
 }
 
 }  // namespace

@@ -1,15 +1,16 @@
 // Against the definition: a dense grid of points, each tested against the edges of the triangles.
-#include "core/control/support_region.h"
+#include "core/planning/support_region.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "core/base/random.h"
 
-namespace surefoot::control {
+namespace surefoot::planning {
 namespace {
 
 Triangle triangle(double ax, double ay, double bx, double by, double cx, double cy) {
@@ -105,5 +106,63 @@ TEST(SupportRegion, EmptyFullAndFlatAreTold) {
   EXPECT_EQ(drawn_in.nearest(Vector2::Zero()).status(), Status::kNotFound);
 }
 
+// Every edge moves inwards by the margin.
+TEST(SupportRegion, ATriangleIsDrawnInAlongItsEdges) {
+  Random random(11);
+  for (int i = 0; i < 1000; ++i) {
+    const Triangle t = random_triangle(random);
+    const double room_m = t.inradius_m();
+    if (room_m < 0.005) continue;
+    const double margin_m = random.uniform(0.0, 0.9) * room_m;
+    const Triangle inner = t.drawn_in(margin_m);
+    EXPECT_NEAR(inner.inradius_m(), room_m - margin_m, 1e-9);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector2 edge = (t.corners_O_m[(k + 1) % 3] - t.corners_O_m[k]).normalized();
+      const Vector2 off = inner.corners_O_m[k] - t.corners_O_m[k];
+      EXPECT_NEAR(std::abs(edge[0] * off[1] - edge[1] * off[0]), margin_m, 1e-9);
+    }
+    EXPECT_NEAR(t.drawn_in(2 * room_m).inradius_m(), 0.05 * room_m, 1e-9);
+  }
+  const Triangle line = triangle(0, 0, 1, 1, 2, 2);
+  EXPECT_EQ(line.drawn_in(0.1).corners_O_m[2], line.corners_O_m[2]);
+}
+
+// Against points all over both triangles.
+TEST(SupportRegion, DistanceOfTrianglesIsThatOfTheirNearestPoints) {
+  constexpr int kParts = 24;
+  Random random(12);
+  int apart = 0;
+  const auto points = [&](const Triangle& t) {
+    std::vector<Vector2> result;
+    for (int a = 0; a <= kParts; ++a) {
+      for (int b = 0; a + b <= kParts; ++b) {
+        result.push_back(
+            (a * t.corners_O_m[0] + b * t.corners_O_m[1] + (kParts - a - b) * t.corners_O_m[2]) /
+            kParts);
+      }
+    }
+    return result;
+  };
+  for (int i = 0; i < 300; ++i) {
+    const Triangle a = random_triangle(random);
+    Triangle b = random_triangle(random);
+    for (Vector2& corner : b.corners_O_m) corner[0] += 0.2;
+    double least_m = 1;
+    const std::vector<Vector2> of_b = points(b);
+    for (const Vector2& p : points(a)) {
+      for (const Vector2& q : of_b) least_m = std::min(least_m, (p - q).norm());
+    }
+    const double distance = distance_m(a, b);
+    EXPECT_EQ(distance, distance_m(b, a));
+    EXPECT_LE(distance, least_m + 1e-12);
+    EXPECT_GE(distance, least_m - 0.6 / kParts);
+    apart += distance > 0 ? 1 : 0;
+  }
+  EXPECT_GT(apart, 50);
+  EXPECT_NEAR(distance_m(triangle(0, 0, 1, 0, 0, 1), triangle(1, 1, 2, 1, 1, 2)), std::sqrt(0.5),
+              1e-12);
+  EXPECT_NEAR(distance_m(triangle(0, 0, 1, 0, 0, 1), triangle(-1, -2, 3, -2, 0, -1)), 1.0, 1e-12);
+}
+
 }  // namespace
-}  // namespace surefoot::control
+}  // namespace surefoot::planning

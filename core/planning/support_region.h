@@ -12,14 +12,25 @@
 #include "core/base/status.h"
 #include "core/math/linear.h"
 
-namespace surefoot::control {
+namespace surefoot::planning {
 
 struct Triangle {
   std::array<Vector2, 3> corners_O_m{Vector2::Zero(), Vector2::Zero(), Vector2::Zero()};
 
   // Of the largest circle inside; 0: the corners lie in a line.
   double inradius_m() const;
+  // Similar, about the centre of that circle: less kept_margin_m() along each edge. Corners in a
+  // line: itself.
+  Triangle drawn_in(double margin_m) const;
 };
+
+// The margin, or where the triangle has no room for it most of its inradius: what is left is a
+// small triangle, not a point.
+double kept_margin_m(double inradius_m, double margin_m);
+
+// Between the nearest points of both; 0 where they overlap. Cost: at most 6 tests for a separating
+// edge and 18 distances from a corner to an edge.
+double distance_m(const Triangle& a, const Triangle& b);
 
 class SupportRegion {
  public:
@@ -42,4 +53,4 @@ class SupportRegion {
   FixedVector<Line, 3 * kMaxTriangles> lines_;
 };
 
-}  // namespace surefoot::control
+}  // namespace surefoot::planning

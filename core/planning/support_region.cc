@@ -1,16 +1,82 @@
-#include "core/control/support_region.h"
+#include "core/planning/support_region.h"
 
 #include "core/math/elementary.h"
 
-namespace surefoot::control {
+namespace surefoot::planning {
 namespace {
 
 constexpr double kRounding_m = 1e-9;  // a corner lies on its lines only so nearly
 constexpr double kParallel = 1e-12;
 
+constexpr double kOfRoom = 0.95;
+
 double cross(const Vector2& a, const Vector2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
+// Whether an edge of `a` has all of `b` on its outside.
+bool edge_separates(const Triangle& a, const Triangle& b) {
+  const auto& p = a.corners_O_m;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector2 edge = p[(i + 1) % 3] - p[i];
+    const bool inside_left = cross(edge, p[(i + 2) % 3] - p[i]) > 0;
+    bool all_outside = true;
+    for (const Vector2& corner : b.corners_O_m) {
+      const double side = cross(edge, corner - p[i]);
+      all_outside = all_outside && (inside_left ? side < 0 : side > 0);
+    }
+    if (all_outside) return true;
+  }
+  return false;
+}
+
+double distance_m2(const Vector2& point, const Vector2& from, const Vector2& to) {
+  const Vector2 edge = to - from;
+  const double length_m2 = edge.squaredNorm();
+  double along = 0;
+  if (length_m2 > 0) along = math::clamp((point - from).dot(edge) / length_m2, 0.0, 1.0);
+  return (point - from - along * edge).squaredNorm();
+}
+
+// From the corners of `a` to the edges of `b`.
+double corner_distance_m2(const Triangle& a, const Triangle& b) {
+  const auto& p = b.corners_O_m;
+  double least_m2 = distance_m2(a.corners_O_m[0], p[0], p[1]);
+  for (const Vector2& corner : a.corners_O_m) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double m2 = distance_m2(corner, p[i], p[(i + 1) % 3]);
+      if (m2 < least_m2) least_m2 = m2;
+    }
+  }
+  return least_m2;
+}
+
 }  // namespace
+
+double kept_margin_m(double inradius_m, double margin_m) {
+  return inradius_m < margin_m ? kOfRoom * inradius_m : margin_m;
+}
+
+double distance_m(const Triangle& a, const Triangle& b) {
+  if (!edge_separates(a, b) && !edge_separates(b, a)) return 0.0;
+  const double there_m2 = corner_distance_m2(a, b);
+  const double back_m2 = corner_distance_m2(b, a);
+  return math::sqrt(there_m2 < back_m2 ? there_m2 : back_m2);
+}
+
+Triangle Triangle::drawn_in(double margin_m) const {
+  const auto& p = corners_O_m;
+  const double a_m = (p[2] - p[1]).norm();
+  const double b_m = (p[0] - p[2]).norm();
+  const double c_m = (p[1] - p[0]).norm();
+  const double perimeter_m = a_m + b_m + c_m;
+  if (!(perimeter_m > 0)) return *this;
+  const double radius_m = math::magnitude(cross(p[1] - p[0], p[2] - p[1])) / perimeter_m;
+  if (radius_m <= kRounding_m) return *this;
+  const Vector2 centre = (a_m * p[0] + b_m * p[1] + c_m * p[2]) / perimeter_m;
+  const double share = 1.0 - kept_margin_m(radius_m, margin_m) / radius_m;
+  Triangle inner;
+  for (std::size_t i = 0; i < 3; ++i) inner.corners_O_m[i] = centre + share * (p[i] - centre);
+  return inner;
+}
 
 double Triangle::inradius_m() const {
   const Vector2 ab = corners_O_m[1] - corners_O_m[0];
@@ -70,4 +136,4 @@ Result<Vector2> SupportRegion::nearest(const Vector2& wanted_O_m) const {
   return best;
 }
 
-}  // namespace surefoot::control
+}  // namespace surefoot::planning

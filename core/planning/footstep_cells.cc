@@ -1,0 +1,87 @@
+#include "core/planning/footstep_cells.h"
+
+#include "core/math/elementary.h"
+
+namespace surefoot::planning {
+namespace {
+
+constexpr std::int32_t kMaxFootRadius_cells = 3;
+
+std::size_t place_in_window(const mapping::MapWindow& window, mapping::CellIndex i) {
+  return static_cast<std::size_t>(i.iy - window.first.iy) * mapping::kWindowSide +
+         static_cast<std::size_t>(i.ix - window.first.ix);
+}
+
+// Unlike %, never negative.
+std::size_t wrapped(std::int32_t i, std::int32_t side) {
+  return static_cast<std::size_t>(static_cast<std::uint32_t>(i) % static_cast<std::uint32_t>(side));
+}
+
+}  // namespace
+
+void FootstepCells::reset(const FootstepConfig& config, double foot_radius_m) {
+  config_ = config;
+  foot_radius_m_ = foot_radius_m;
+  map_ = nullptr;
+}
+
+void FootstepCells::start(const terrain::TerrainMap& map) {
+  map_ = &map;
+  cells_.fill(FootstepCell{});
+}
+
+const FootstepCell& FootstepCells::at(mapping::CellIndex index) {
+  FootstepCell& cell = cells_[wrapped(index.iy, kSide) * kSide + wrapped(index.ix, kSide)];
+  if (!cell.rated || !(cell.index == index)) {
+    cell = FootstepCell{};
+    cell.index = index;
+    cell.rated = true;
+    rate(cell);
+  }
+  return cell;
+}
+
+void FootstepCells::rate(FootstepCell& cell) const {
+  const mapping::MapWindow& ground = map_->ground;
+  const mapping::WindowCell* middle = ground.find(cell.index);
+  if (middle == nullptr || !middle->has_height()) return;
+  const double terrain = static_cast<double>(map_->cost[place_in_window(ground, cell.index)]);
+  if (!(terrain <= config_.max_cost)) return;
+  double height_m = 0;
+  double spread_m = 0;
+  int known = 0;
+  for (std::int32_t i = 0; i < 9; ++i) {
+    const mapping::CellIndex at = cell.index + mapping::CellIndex{i % 3 - 1, i / 3 - 1};
+    const mapping::WindowCell* around = ground.find(at);
+    if (around == nullptr || !around->has_height()) continue;
+    height_m += static_cast<double>(around->height_m);
+    spread_m += static_cast<double>(map_->spread_m[place_in_window(ground, at)]);
+    ++known;
+  }
+  cell.usable = true;
+  cell.height_m = height_m / known;  // the middle one has a height
+  const double edge_m = highest_m(cell.index) - cell.height_m;
+  cell.cost_m = config_.terrain_weight_m * terrain + config_.spread_weight * (spread_m / known);
+  if (edge_m > 0) cell.cost_m += config_.edge_weight * edge_m;
+}
+
+// Of the cells with height whose centres the foot covers.
+double FootstepCells::highest_m(mapping::CellIndex index) const {
+  const mapping::MapWindow& ground = map_->ground;
+  const double radius_cells = foot_radius_m_ / ground.cell_size_m;
+  const std::int32_t n = math::clamp(static_cast<std::int32_t>(math::clamp(radius_cells, 0.0, 9.0)),
+                                     std::int32_t{0}, kMaxFootRadius_cells);
+  double highest_m = static_cast<double>(ground.at(index).height_m);
+  for (std::int32_t dy = -n; dy <= n; ++dy) {
+    for (std::int32_t dx = -n; dx <= n; ++dx) {
+      if (static_cast<double>(dx * dx + dy * dy) > radius_cells * radius_cells) continue;
+      const mapping::WindowCell* cell = ground.find(index + mapping::CellIndex{dx, dy});
+      if (cell == nullptr || !cell->has_height()) continue;
+      const auto height_m = static_cast<double>(cell->height_m);
+      if (height_m > highest_m) highest_m = height_m;
+    }
+  }
+  return highest_m;
+}
+
+}  // namespace surefoot::planning

@@ -1,0 +1,194 @@
+// The search for footsteps by the book: every sequence, costs from their definitions, legs by
+// inverse kinematics. Sequences that cost more than a given bound are cut, which changes nothing.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "core/geometry/rotations.h"
+#include "core/planning/footsteps.h"
+#include "core/robot/kinematics.h"
+#include "tests/support/rough_footsteps.h"
+
+namespace surefoot::planning {
+
+class FootstepOracle {
+ public:
+  FootstepOracle(const FootstepConfig& config, const robot::RobotModel& model,
+                 const StanceShape& shape, const FootstepProblem& problem,
+                 const terrain::TerrainMap& map)
+      : config_(config), model_(model), shape_(shape), problem_(problem), map_(map) {}
+
+  // The least cost of all sequences, at most `bound`; steps() are empty where none costs less.
+  double search(double bound) {
+    best_ = bound;
+    best_steps_.clear();
+    made_.clear();
+    descend(problem_.feet_O_m, 0.0);
+    return best_;
+  }
+  const std::vector<Footstep>& steps() const { return best_steps_; }
+
+  // Of one step from these feet; below 0: not allowed.
+  double step_cost(const Feet& feet, std::size_t depth, const Vector3& nominal, Footstep& step) {
+    const std::size_t turn = (problem_.turn + depth) % 4;
+    const std::size_t leg = kStepOrder[turn];
+    double spread_m = 0;
+    double ground_m = 0;
+    if (!mean_around(step.cell, ground_m, spread_m)) return -1;
+    const double terrain = at(map_.cost, step.cell);
+    if (terrain > config_.max_cost) return -1;
+    step.position_O_m[2] = ground_m + problem_.map_offset_m + model_.foot_radius_m;
+    const double rise_m = std::abs(step.position_O_m[2] - feet[leg][2]);
+    if (rise_m > config_.max_step_m) return -1;
+    Feet landed = feet;
+    landed[leg] = step.position_O_m;
+    const Triangle next = without(landed, kStepOrder[(turn + 1) % 4]);
+    const double room_m = next.inradius_m();
+    if (room_m < config_.min_inradius_m) return -1;
+    const double edge_m = std::max(0.0, highest_m(step.cell) - ground_m);
+    const double off_m = (step.position_O_m - nominal).head<2>().norm();
+    const double shift_m =
+        distance_m(without(feet, leg).drawn_in(shape_.margin_m), next.drawn_in(shape_.margin_m));
+    return config_.terrain_weight_m * terrain + config_.spread_weight * spread_m +
+           config_.edge_weight * edge_m + off_m * off_m / config_.deviation_scale_m +
+           config_.rise_weight * rise_m +
+           config_.inradius_weight * std::max(0.0, config_.wanted_inradius_m - room_m) +
+           config_.shift_weight * shift_m;
+  }
+
+  // With the trunk's pose of this step, at some height that is allowed.
+  bool solvable(const Feet& feet, std::size_t depth, const Vector3& landing) const {
+    const std::size_t turn = (problem_.turn + depth) % 4;
+    Feet landed = feet;
+    landed[kStepOrder[turn]] = landing;
+    const TrunkPose pose = trunk_over(model_, shape_, landed, problem_.yaw_rad);
+    const Vector2 centre =
+        place_centre(feet, landed, turn, shape_.margin_m, pose.centre_O_m).place_O_m;
+    const Vector3& rpy = pose.roll_pitch_yaw_rad;
+    const Matrix3 R_BO = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]).transpose();
+    for (int i = 0; i * 0.006 <= config_.max_lowering_m; ++i) {
+      const Vector3 p_OB_m(centre[0], centre[1], pose.height_O_m - i * 0.006);
+      bool all = true;
+      for (std::size_t k = 0; k < 4; ++k) {
+        all = all && ok(robot::solve_leg(model_, k, R_BO * (landed[k] - p_OB_m)).status) &&
+              ok(robot::solve_leg(model_, k, R_BO * (feet[k] - p_OB_m)).status);
+      }
+      if (all) return true;
+    }
+    return false;
+  }
+
+  Vector3 nominal(const Feet& feet, std::size_t depth) const {
+    const Hips hips = stance_hips_O_m(model_, shape_.lateral_offset_m, problem_.yaw_rad);
+    return nominal_place_O_m(feet, hips, kStepOrder[(problem_.turn + depth) % 4],
+                             problem_.stride_O_m);
+  }
+
+ private:
+  static Triangle without(const Feet& feet, std::size_t leg) {
+    std::vector<Vector2> corners;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (i != leg) corners.push_back(feet[i].head<2>());
+    }
+    return {{corners[0], corners[1], corners[2]}};
+  }
+
+  double at(const std::array<float, terrain::TerrainMap::kCells>& layer, mapping::CellIndex i) {
+    return static_cast<double>(layer[static_cast<std::size_t>(
+        (i.iy - map_.ground.first.iy) * mapping::kWindowSide + i.ix - map_.ground.first.ix)]);
+  }
+
+  bool mean_around(mapping::CellIndex i, double& height_m, double& spread_m) {
+    const mapping::WindowCell* middle = map_.ground.find(i);
+    if (middle == nullptr || !middle->has_height()) return false;
+    int known = 0;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const mapping::CellIndex near = i + mapping::CellIndex{dx, dy};
+        const mapping::WindowCell* cell = map_.ground.find(near);
+        if (cell == nullptr || !cell->has_height()) continue;
+        height_m += static_cast<double>(cell->height_m);
+        spread_m += at(map_.spread_m, near);
+        ++known;
+      }
+    }
+    height_m /= known;
+    spread_m /= known;
+    return true;
+  }
+
+  double highest_m(mapping::CellIndex i) const {
+    double highest_m = static_cast<double>(map_.ground.at(i).height_m);
+    for (int dy = -3; dy <= 3; ++dy) {
+      for (int dx = -3; dx <= 3; ++dx) {
+        const mapping::WindowCell* cell = map_.ground.find(i + mapping::CellIndex{dx, dy});
+        const double away_m = std::hypot(dx, dy) * map_.ground.cell_size_m;
+        if (cell == nullptr || !cell->has_height() || away_m > model_.foot_radius_m) continue;
+        highest_m = std::max(highest_m, static_cast<double>(cell->height_m));
+      }
+    }
+    return highest_m;
+  }
+
+  void descend(const Feet& feet, double cost) {
+    const auto steps = static_cast<std::size_t>(config_.steps);
+    if (made_.size() == steps) return end(cost);
+    const Vector3 nominal_O_m = nominal(feet, made_.size());
+    std::vector<Footstep> candidates;
+    const double size_m = map_.ground.cell_size_m;
+    const mapping::CellIndex middle = mapping::cell_index(nominal_O_m[0], nominal_O_m[1], size_m);
+    const int r = config_.radius_cells;
+    for (int dy = -r; dy <= r; ++dy) {
+      for (int dx = -r; dx <= r; ++dx) {
+        Footstep step;
+        step.leg = kStepOrder[(problem_.turn + made_.size()) % 4];
+        step.cell = middle + mapping::CellIndex{dx, dy};
+        step.nominal_O_m = nominal_O_m;
+        step.position_O_m = nominal_O_m;
+        if (dx != 0 || dy != 0) {
+          step.position_O_m[0] = (step.cell.ix + 0.5) * size_m;
+          step.position_O_m[1] = (step.cell.iy + 0.5) * size_m;
+        }
+        step.cost = step_cost(feet, made_.size(), nominal_O_m, step);
+        if (step.cost >= 0) candidates.push_back(step);
+      }
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Footstep& a, const Footstep& b) { return a.cost < b.cost; });
+    const double ending = cost + static_cast<double>(steps - made_.size()) * config_.missing_step_m;
+    bool continues = false;
+    for (const Footstep& step : candidates) {
+      const bool dear = cost + step.cost >= best_;
+      if (dear && (continues || ending >= best_)) break;
+      if (!solvable(feet, made_.size(), step.position_O_m)) continue;
+      continues = true;
+      if (dear) break;
+      Feet landed = feet;
+      landed[step.leg] = step.position_O_m;
+      made_.push_back(step);
+      descend(landed, cost + step.cost);
+      made_.pop_back();
+    }
+    if (!continues && !made_.empty()) end(ending);
+  }
+
+  void end(double cost) {
+    if (cost >= best_) return;
+    best_ = cost;
+    best_steps_ = made_;
+  }
+
+  FootstepConfig config_;
+  robot::RobotModel model_;
+  StanceShape shape_;
+  FootstepProblem problem_;
+  const terrain::TerrainMap& map_;
+  double best_ = 0;
+  std::vector<Footstep> best_steps_;
+  std::vector<Footstep> made_;
+};
+
+}  // namespace surefoot::planning
