@@ -40,5 +40,6 @@ extern const WorkEntry kDynamicsCases[];
 extern const WorkEntry kJumpCases[];
 extern const WorkEntry kObstacleCases[];
 extern const WorkEntry kStereoCases[];
+extern const WorkEntry kPlanningCases[];
 
 }  // namespace surefoot::timing

@@ -24,6 +24,7 @@ constexpr Workload kWorkloads[] = {
     {"stereo", surefoot::tests::hash_stereo},
     {"mapping", surefoot::tests::hash_mapping},
     {"terrain", surefoot::tests::hash_terrain},
+    {"planning", surefoot::tests::hash_planning},
     {"swing", surefoot::tests::hash_swing},
     {"convex_mpc", surefoot::tests::hash_convex_mpc},
     {"whole_body", surefoot::tests::hash_whole_body},
