@@ -9,6 +9,7 @@
 #include "apps/common/config_motions.h"
 #include "apps/common/config_reader.h"
 #include "apps/common/config_stereo.h"
+#include "apps/common/config_terrain.h"
 #include "apps/common/config_writer.h"
 
 namespace surefoot::apps {
@@ -253,6 +254,7 @@ Config load_config_parts(const RunRequest& request, const fs::path& folder, Conf
   for (const std::string& set : request.sets) apply_override(tree, set, issues);
   load_motions(tree, folder, issues);
   load_stereo(tree, issues);
+  load_terrain(tree, issues);
   Config config;
   ConfigIssues read;
   ConfigReader::read(tree, config, read);

@@ -8,14 +8,13 @@
 #include <string>
 #include <utility>
 
+#include "apps/common/config_include.h"
 #include "apps/common/config_values.h"
 #include "core/autonomy/stereo_task.h"
 #include "core/geometry/rotations.h"
 
 namespace surefoot::apps {
 namespace {
-
-namespace fs = std::filesystem;
 
 const std::string kCamera = "robot.stereo_camera";
 const std::string kKey = kCamera + ".calibration";
@@ -185,20 +184,13 @@ void load_stereo(ConfigNode& tree, ConfigIssues& issues) {
   ConfigNode* node = find_path(tree, {"robot", "stereo_camera", "calibration"});
   // A group is what the record holds.
   if (node == nullptr || node->kind == ConfigNode::Kind::kMap) return;
-  const ConfigPlace place = node->place;
-  const ConfigNode* robot = tree.find("robot");
-  const fs::path folder = fs::path(robot->place.source).parent_path();
-  const fs::path file =
-      fs::path(node->text).is_absolute() ? fs::path(node->text) : folder / node->text;
-  std::error_code error;
-  if (node->text.empty() || !fs::is_regular_file(file, error)) {
-    issues.push_back({place, kKey,
-                      fmt::format("'{}' is no calibration: {} does not exist", node->text,
-                                  file.lexically_normal().string())});
-    tree.find("robot")->find("stereo_camera")->find("calibration")->kind = ConfigNode::Kind::kMap;
+  const std::optional<std::filesystem::path> file =
+      named_file(*node, tree.find("robot")->place.source, kKey, "calibration", issues);
+  if (!file) {
+    node->kind = ConfigNode::Kind::kMap;
     return;
   }
-  ConfigNode calibration = read_yaml_file(file.lexically_normal().string(), issues);
+  ConfigNode calibration = read_yaml_file(file->string(), issues);
   for (const char* key : {"camera_matrix_left", "camera_matrix_right", "R"}) {
     take_matrix(calibration, {key, 3, 3}, issues);
   }

@@ -1,5 +1,6 @@
 #include "apps/common/perceived_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -88,12 +89,40 @@ ClassGrid classify_map(const mapping::ControlMap& map, const mapping::MappingCon
   return grid;
 }
 
+double distance_to_surface_m(const TrueGround& ground, double x_m, double y_m, double z_m) {
+  constexpr double kStep_m = 0.001;
+  double nearest_m = std::fabs(z_m - ground(x_m, y_m));
+  const auto look = [&](int dx, int dy) {
+    const double across_m = std::hypot(dx, dy) * kStep_m;
+    if (across_m >= nearest_m) return;
+    const double x = x_m + dx * kStep_m;
+    const double y = y_m + dy * kStep_m;
+    const auto [low, high] =
+        std::minmax({ground(x, y), ground(x + kStep_m, y), ground(x, y + kStep_m)});
+    const double off_m = z_m < low ? low - z_m : (z_m > high ? z_m - high : 0.0);
+    nearest_m = std::min(nearest_m, std::hypot(across_m, off_m));
+  };
+  // Ring by ring, until no sample can be nearer.
+  for (int ring = 1; ring * kStep_m < nearest_m; ++ring) {
+    for (int i = -ring; i <= ring; ++i) {
+      look(i, -ring);
+      look(i, ring);
+    }
+    for (int i = 1 - ring; i < ring; ++i) {
+      look(-ring, i);
+      look(ring, i);
+    }
+  }
+  return nearest_m;
+}
+
 MapError map_error(const mapping::Mapper& mapper, const Alignment& O_in_W, const RunLog& log,
                    const TrueGround& ground, double half_width_m) {
   MapError error;
   if (!mapper.configured()) return error;
   const double size = mapper.cell_size_m();
   double sum = 0;
+  double vertical_sum = 0;
   std::vector<double> sizes;
   for (const auto& [ix, iy] : corridor(log, O_in_W, size, half_width_m)) {
     ++error.cells;
@@ -101,9 +130,11 @@ MapError map_error(const mapping::Mapper& mapper, const Alignment& O_in_W, const
     if (cell == nullptr || cell->state != mapping::CellState::kMeasured) continue;
     const auto p = O_in_W.to_world({mapping::cell_centre(ix, size), mapping::cell_centre(iy, size),
                                     static_cast<double>(cell->height_m)});
-    const double off = p[2] - ground(p[0], p[1]);
+    const double height_off = p[2] - ground(p[0], p[1]);
+    vertical_sum += height_off * height_off;
+    const double off = distance_to_surface_m(ground, p[0], p[1], p[2]);
     sum += off * off;
-    sizes.push_back(std::fabs(off));
+    sizes.push_back(off);
     ++error.measured;
   }
   if (!sizes.empty()) {
@@ -111,7 +142,10 @@ MapError map_error(const mapping::Mapper& mapper, const Alignment& O_in_W, const
     std::nth_element(sizes.begin(), middle, sizes.end());
     error.median_m = *middle;
   }
-  if (error.measured > 0) error.rmse_m = std::sqrt(sum / static_cast<double>(error.measured));
+  if (error.measured > 0) {
+    error.rmse_m = std::sqrt(sum / static_cast<double>(error.measured));
+    error.vertical_rmse_m = std::sqrt(vertical_sum / static_cast<double>(error.measured));
+  }
   if (error.cells > 0) {
     error.known_fraction = static_cast<double>(error.measured) / static_cast<double>(error.cells);
   }

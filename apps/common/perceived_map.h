@@ -29,10 +29,14 @@ struct ClassGrid {
   }
 };
 
+// How far the middle of a measured cell, at its height, is from the true surface. At a wall the
+// difference in height says little: a cell's breadth beside it the ground is as far off as the wall
+// is high. So the nearest point of the surface counts; the difference in height is given as well.
 struct MapError {
-  double rmse_m = 0;          // of the measured cells; 0 where there is none
-  double median_m = 0;        // of the measured cells' errors, signs left out
-  double known_fraction = 0;  // measured cells of all cells in the corridor
+  double rmse_m = 0;           // distances to the surface; 0 where there is no measured cell
+  double median_m = 0;         // likewise
+  double vertical_rmse_m = 0;  // differences in height
+  double known_fraction = 0;   // measured cells of all cells in the corridor
   std::size_t measured = 0;
   std::size_t cells = 0;
 };
@@ -52,8 +56,13 @@ ClassGrid classify_map(const mapping::ControlMap& map, const mapping::MappingCon
                        const mapping::TraversabilityLimits& limits, const Alignment& O_in_W,
                        const HeightGrid& raster);
 
-// The map's own cells whose centres lie within `half_width` of the body's trace, each against the
-// ground at its centre: error of the measured ones, and their share.
+// From a place to the surface over the plane, walls between samples 1 mm apart included: at most the
+// difference in height. Ring by ring: the cost is
+// three samples a square millimetre of a square that reaches as far as the answer.
+double distance_to_surface_m(const TrueGround& ground, double x_m, double y_m, double z_m);
+
+// The map's own cells whose centres lie within `half_width` of the body's trace: error of the
+// measured ones, and their share.
 MapError map_error(const mapping::Mapper& mapper, const Alignment& O_in_W, const RunLog& log,
                    const TrueGround& ground, double half_width_m);
 

@@ -13,6 +13,8 @@ constexpr std::uint32_t kControlBudget_us = 1000;
 constexpr std::uint32_t kMpcBudget_us = 1000;
 constexpr std::uint32_t kMappingBudget_us = 10000;
 constexpr std::uint32_t kStereoBudget_us = 120000;
+constexpr std::uint32_t kLocalisationBudget_us = 40000;
+constexpr std::uint32_t kTerrainBudget_us = 2000;  // a slice
 
 Autonomy& of(void* self) { return *static_cast<Autonomy*>(self); }
 
@@ -58,6 +60,22 @@ runtime::Task stereo_task(Autonomy& autonomy) {
   return task;
 }
 
+// Between stereo and mapping in the table: it takes what the one publishes, and the other takes
+// what it publishes.
+runtime::Task localisation_task(Autonomy& autonomy) {
+  runtime::Task task;
+  task.name = "localisation";
+  task.latency_ticks = autonomy::kLocalisationLatencyTicks;
+  task.budget_us = kLocalisationBudget_us;
+  task.self = &autonomy;
+  task.release = [](void* self, const TickInputs& inputs) {
+    return of(self).begin_localisation(inputs);
+  };
+  task.run = [](void* self) { of(self).run_localisation(); };
+  task.publish = [](void* self, TickOutputs&) { of(self).publish_localisation(); };
+  return task;
+}
+
 // After control in the table: a frame is mapped with the pose history of the tick that brought it.
 runtime::Task mapping_task(Autonomy& autonomy) {
   runtime::Task task;
@@ -73,14 +91,29 @@ runtime::Task mapping_task(Autonomy& autonomy) {
   return task;
 }
 
+// After mapping in the table: it takes the window that is published in the same tick.
+runtime::Task terrain_task(Autonomy& autonomy) {
+  runtime::Task task;
+  task.name = "terrain";
+  task.latency_ticks = autonomy::kTerrainLatencyTicks;
+  task.budget_us = kTerrainBudget_us;
+  task.self = &autonomy;
+  task.release = [](void* self, const TickInputs& inputs) {
+    return of(self).begin_terrain(inputs);
+  };
+  task.run = [](void* self) { of(self).run_terrain(); };
+  task.publish = [](void* self, TickOutputs&) { of(self).publish_terrain(); };
+  return task;
+}
+
 }  // namespace
 
 Status Stack::start(const Config& config, const hal::Board& board, runtime::SlowTaskRunner& runner,
                     runtime::TickObserver* observer) {
   const Status ready = autonomy_.reset(config.robot, config.autonomy);
   if (!ok(ready)) return ready;
-  tasks_ = {control_task(autonomy_), mpc_task(autonomy_), stereo_task(autonomy_),
-            mapping_task(autonomy_)};
+  tasks_ = {control_task(autonomy_),      mpc_task(autonomy_),     stereo_task(autonomy_),
+            localisation_task(autonomy_), mapping_task(autonomy_), terrain_task(autonomy_)};
   runtime::ExecutiveSetup setup;
   setup.board = board;
   setup.tasks = tasks_;
@@ -95,6 +128,8 @@ std::vector<MemoryRow> memory_table() {
       {"runtime", sizeof(runtime::Executive)},
       {"mapping", sizeof(autonomy::MapTask)},
       {"stereo", sizeof(autonomy::StereoTask)},
+      {"localisation", sizeof(autonomy::LocalisationTask)},
+      {"terrain", sizeof(autonomy::TerrainTask)},
       {"estimation", sizeof(estimation::Estimator) + sizeof(autonomy::PoseHistory)},
       {"control", sizeof(control::Locomotion) + sizeof(control::StaticWalk) +
                       sizeof(control::StandUp) + sizeof(autonomy::MpcTask)},

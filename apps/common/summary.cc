@@ -40,7 +40,9 @@ Json counters_json(const RunFacts& facts) {
           {"static_steps_missed", facts.static_walk.missed},
           {"static_steps_narrow", facts.static_walk.narrow},
           {"static_steps_slipped", facts.static_walk.slipped},
-          {"static_steps_lowered", facts.static_walk.lowered}};
+          {"static_steps_lowered", facts.static_walk.lowered},
+          {"static_steps_tipped", facts.static_walk.tipped},
+          {"static_steps_waited", facts.static_walk.waited}};
 }
 
 Json jump_json(const JumpFigures& jump) {
@@ -99,12 +101,24 @@ Json summary_json(const RunFacts& facts) {
                       {"rms_error_m", m.estimate.rms_error_m}};
   json["map"] = {{"rmse_m", facts.map.rmse_m},
                  {"median_m", facts.map.median_m},
+                 {"vertical_rmse_m", facts.map.vertical_rmse_m},
                  {"known_fraction", facts.map.known_fraction}};
   json["stereo"] = {{"triggers", facts.stereo.triggers},
                     {"pairs_matched", facts.stereo.pairs_matched},
                     {"pairs_refused", facts.stereo.pairs_refused},
                     {"pairs_unusable", facts.stereo.pairs_unusable},
                     {"valid_share", facts.stereo.valid_share}};
+  const autonomy::LocalisationCounters& pictures = facts.localisation;
+  json["localisation"] = {{"registered", pictures.registered},
+                          {"first", pictures.first},
+                          {"thin", pictures.thin},
+                          {"unmatched", pictures.unmatched},
+                          {"implausible", pictures.implausible},
+                          {"without_pose", pictures.without_pose}};
+  json["fill"] = {{"maps", facts.fill.maps},
+                  {"refused", facts.fill.refused},
+                  {"filled", facts.fill.filled},
+                  {"unknown", facts.fill.unknown}};
   json["memory"] = {{"static_bytes", facts.static_bytes},
                     {"heap_calls_after_start", facts.heap_calls},
                     {"page_faults_after_start", facts.page_faults}};

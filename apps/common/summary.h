@@ -40,6 +40,8 @@ struct RunFacts {
   std::uint64_t map_frames_bounded = 0;
   estimation::TrackingCounters tracking;
   control::StaticWalkCounters static_walk;
+  autonomy::LocalisationCounters localisation;
+  autonomy::TerrainCounters fill;    // of the map that was published last
   autonomy::StereoTelemetry stereo;  // valid_share: the mean over all pairs
 };
 

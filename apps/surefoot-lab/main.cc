@@ -13,6 +13,8 @@
 #include "apps/surefoot-lab/eval_traversability.h"
 #include "apps/surefoot-lab/export.h"
 #include "apps/surefoot-lab/jump/motion_command.h"
+#include "apps/surefoot-lab/learn_terrain.h"
+#include "sim_hal/world/rock_field.h"
 
 namespace surefoot::apps {
 namespace {
@@ -28,6 +30,7 @@ struct Arguments {
   TraversabilityOptions traversability;
   RegistrationOptions registration;
   TerrainFillOptions terrain_fill;
+  LearnTerrainOptions learn_terrain;
   std::string library_seeds;
   std::string test_seeds;
 };
@@ -124,6 +127,32 @@ EvalCommands add_eval(CLI::App& app, Arguments& arguments) {
           add_eval_terrain_fill(*command, arguments)};
 }
 
+CLI::App* add_learn(CLI::App& app, Arguments& arguments) {
+  LearnTerrainOptions& options = arguments.learn_terrain;
+  CLI::App* command = app.add_subcommand("learn", "what a robot takes along");
+  command->require_subcommand(1);
+  CLI::App* terrain = command->add_subcommand("terrain", "rocks and the prior of unseen ground");
+  terrain->add_option("--robot", options.robot, "name or file")->required();
+  terrain->add_option("--seeds", arguments.seeds, "A..B, of the generated rocks")->required();
+  terrain->add_option("--out", options.out, "file")->required();
+  terrain->add_option("--jobs", options.jobs, "rock fields made at a time")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  return terrain;
+}
+
+int run_learn_terrain(Arguments& arguments) {
+  const auto seeds = parse_seeds(arguments.seeds);
+  if (!seeds) {
+    std::fputs(fmt::format("--seeds: '{}' is not A..B\n", arguments.seeds).c_str(), stderr);
+    return 2;
+  }
+  arguments.learn_terrain.first_seed = seeds->first;
+  arguments.learn_terrain.last_seed = seeds->last;
+  arguments.learn_terrain.cache = sim::rock_cache_folder();
+  return learn_terrain(arguments.learn_terrain);
+}
+
 int run_campaign(Arguments& arguments) {
   const auto seeds = parse_seeds(arguments.seeds);
   if (!seeds) {
@@ -182,6 +211,7 @@ int dispatch(int argc, char** argv, Stack& stack) {
   motion_command->add_option("--robot", arguments.motion.robot, "name or file")->required();
   motion_command->add_option("--out", arguments.motion.out, "file; config/motions/NAME.yaml");
   motion_command->add_flag("--verbose", arguments.motion.verbose, "the solver's iterations");
+  CLI::App* learn_command = add_learn(app, arguments);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -192,6 +222,7 @@ int dispatch(int argc, char** argv, Stack& stack) {
   if (eval.registration->parsed()) return run_eval_registration(arguments);
   if (eval.terrain_fill->parsed()) return run_eval_terrain_fill(arguments);
   if (eval.traversability->parsed()) return eval_traversability(arguments.traversability);
+  if (learn_command->parsed()) return run_learn_terrain(arguments);
   if (motion_command->parsed()) return make_motion_file(arguments.motion);
   return export_command->parsed()
              ? export_record(arguments.input, arguments.to, arguments.out, stack)

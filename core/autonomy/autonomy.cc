@@ -11,8 +11,6 @@ constexpr double kForget_m = 1.5;    // around a robot that fell
 constexpr TimeNs kTrustedBeforeFall = milliseconds(1000);  // the pose by the legs, that much before
 constexpr double kBrakingShare = 0.75;  // of the command's acceleration: the trunk lags behind it
 
-std::array<double, 3> to_array(const Vector3& v) { return {v[0], v[1], v[2]}; }
-
 // Of the trunk's origin over the mean of the feet's centres, along gravity.
 double height_over_feet_m(const estimation::RobotState& state) {
   double height_m = 0;
@@ -49,6 +47,10 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   const MapCamera camera = stereo_.enabled() ? stereo_.camera() : depth_map_camera(model);
   const Status mapped = map_.reset(config.mapping, limits, model, camera);
   if (!ok(mapped)) return mapped;
+  const Status located = localisation_.reset(config.localisation, config.mapping, model, camera);
+  if (!ok(located)) return located;
+  const Status completed = terrain_.reset(config.terrain, config.mapping.cell_size_m);
+  if (!ok(completed)) return completed;
   avoidance_.reset(config.obstacles, footprint(model));
   velocity_ = control::VelocityCommand{};
   changed_side_ = false;
@@ -74,6 +76,7 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   commands_ = actuation::JointCommands{};
   walking_ready_ = false;
   has_stood_ = false;
+  on_pad_ = false;
   footing_O_m_.setZero();
   collapsed_s_ = 0;
   imu_silent_s_ = 0;
@@ -241,11 +244,20 @@ void Autonomy::begin_walking(const estimation::RobotState& state) {
   pad.yaw_rad = state.yaw_rad;
   pad.half_length_m = 0.5 * config_.start_pad.length_m;
   pad.half_width_m = 0.5 * config_.start_pad.width_m;
+  localisation_.forget();
+  on_pad_ = !has_stood_;
   const bool seen_before = has_stood_;
   has_stood_ = true;
   if (!config_.mapping.enabled) return;
   if (seen_before) SUREFOOT_ASSERT(ok(map_.forget(pad.x_O_m, pad.y_O_m, kForget_m)));
   SUREFOOT_ASSERT(ok(map_.assume_pad(pad)));
+}
+
+// The operator vouches for a level pad: what the accelerometer takes for up is compared with it.
+void Autonomy::level_on_pad() {
+  on_pad_ = on_pad_ && mission_.phase() == MissionPhase::kSettle;
+  if (!on_pad_ || config_.start_pad.level_gain_1_s <= 0) return;
+  estimator_.level_on_pad(math::clamp(config_.start_pad.level_gain_1_s * tick_s_, 0.0, 1.0));
 }
 
 void Autonomy::act(const estimation::RobotState& state) {
@@ -260,6 +272,7 @@ void Autonomy::act(const estimation::RobotState& state) {
     case MissionPhase::kWalk:
     case MissionPhase::kArrived:
       if (!walking_ready_) begin_walking(state);
+      level_on_pad();
       walk(state);
       break;
     case MissionPhase::kStopped: commands_ = bus_.damping_commands(); break;
@@ -306,9 +319,9 @@ void Autonomy::walk(const estimation::RobotState& state) {
   const bool walks = mission_.phase() == MissionPhase::kWalk;
   if (walks_statically()) {
     const control::WalkCommand command = walk_command(state);
-    commands_ =
-        static_walk_.update(state, window(), nullptr, command.velocity,
-                            command.gait != control::GaitKind::kStand, command.ground, tick_s_);
+    commands_ = static_walk_.update(state, window(), terrain_.enabled() ? &terrain_.map() : nullptr,
+                                    command.velocity, command.gait != control::GaitKind::kStand,
+                                    command.ground, tick_s_);
     return;
   }
   const bool on_detour = walks && avoidance_.side() != 0;
@@ -362,87 +375,6 @@ void Autonomy::watch(const estimation::RobotState& state) {
   if (outputs_.stereo_trigger) ++outputs_.telemetry.stereo.triggers;
 }
 
-void Autonomy::report(const estimation::RobotState& state) {
-  Telemetry& telemetry = outputs_.telemetry;
-  telemetry.phase = mission_.phase();
-  telemetry.stop_reason = mission_.stop_reason();
-  telemetry.p_OB_m = to_array(state.p_OB_m);
-  telemetry.q_OB_wxyz = {state.q_OB.w, state.q_OB.x, state.q_OB.y, state.q_OB.z};
-  telemetry.v_OB_m_s = to_array(state.v_OB_m_s);
-  telemetry.angular_velocity_B_rad_s = to_array(state.angular_velocity_B_rad_s);
-  const control::VelocityCommand& command = locomotion_acts() ? velocity_ : mission_.command();
-  telemetry.velocity_command_B = {command.forward_m_s, command.left_m_s, command.yaw_rate_rad_s};
-  for (std::size_t i = 0; i < robot::kJoints; ++i) {
-    JointTelemetry& joint = telemetry.joints[i];
-    joint.position_rad = state.joints[i].position_rad;
-    joint.velocity_rad_s = state.joints[i].velocity_rad_s;
-    joint.torque_Nm = state.joints[i].torque_Nm;
-    joint.position_command_rad = commands_[i].position_rad;
-    joint.torque_command_Nm = commands_[i].torque_Nm;
-  }
-  report_legs(state);
-  report_jump();
-  report_stereo();
-  telemetry.depth_frames_mapped = map_.counters().frames_integrated;
-  telemetry.map_digest = map_.window_digest();
-  const estimation::DriftEstimator& drift = estimator_.drift();
-  telemetry.tracking.position_error_O_m = to_array(drift.position_error_O_m());
-  telemetry.tracking.yaw_error_rad = drift.yaw_error_rad();
-  telemetry.tracking.samples = drift.counters();
-  report_obstacles(state);
-  telemetry.replies_missed = bus_.counters().missed;
-  telemetry.replies_invalid = bus_.counters().invalid;
-}
-
-void Autonomy::report_obstacles(const estimation::RobotState& state) {
-  if (!config_.mission.avoid) return;
-  ObstacleTelemetry& telemetry = outputs_.telemetry.obstacles;
-  const obstacles::Fields& fields = map_.fields();
-  static_cast<void>(telemetry.fields_O_m.resize(fields.size()));  // the same capacity
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    telemetry.fields_O_m[i] = {fields[i].centre_O_m[0], fields[i].centre_O_m[1]};
-  }
-  telemetry.side = avoidance_.side();
-  telemetry.counters = map_.field_counters();
-  telemetry.free_space_m = 0;
-  if (fields.empty()) return;
-  telemetry.free_space_m = avoidance_.free_space_m(fields, {state.p_OB_m.head<2>(), state.yaw_rad});
-}
-
-void Autonomy::report_legs(const estimation::RobotState& state) {
-  const std::array<estimation::GaitPhase, robot::kLegs> phases = gait_phases();
-  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    const control::LegStatus& status = legs()[leg];
-    LegTelemetry& telemetry = outputs_.telemetry.legs[leg];
-    telemetry.stance_planned = phases[leg].stance_planned;
-    telemetry.contact = state.feet[leg].in_contact;
-    telemetry.foot_O_m = to_array(state.feet[leg].p_O_m);
-    telemetry.force_O_N = to_array(status.force_O_N);
-    telemetry.foothold_nominal_O_m = to_array(status.foothold.nominal_O_m);
-    telemetry.foothold_O_m = to_array(status.foothold.position_O_m);
-    telemetry.foothold_reason = status.foothold.reason;
-  }
-}
-
-void Autonomy::report_jump() {
-  JumpTelemetry& telemetry = outputs_.telemetry.jump;
-  telemetry.pilot = jump_pilot_.stage();
-  telemetry.stage = jump_pilot_.jump().stage();
-  telemetry.counters = jump_pilot_.counters();
-  telemetry.edge_m = jump_pilot_.distance_m();
-  telemetry.heading_rad = jump_pilot_.heading_error_rad();
-  telemetry.rise_m = jump_pilot_.rise_m();
-  telemetry.gap_m = jump_pilot_.ledge().gap_m;
-}
-
-void Autonomy::report_stereo() {
-  StereoTelemetry& telemetry = outputs_.telemetry.stereo;
-  telemetry.pairs_matched = stereo_.counters().pairs_matched;
-  telemetry.pairs_refused = stereo_.counters().pairs_refused;
-  telemetry.pairs_unusable = stereo_.counters().pairs_unusable;
-  telemetry.valid_share = stereo_.valid_share();
-}
-
 bool Autonomy::begin_mpc(const TickInputs& inputs) {
   if (walks_statically()) return false;
   if (!walking_ready_ || !locomotion_acts() || jump_pilot_.jumps()) return false;
@@ -456,15 +388,47 @@ bool Autonomy::begin_stereo(const TickInputs& inputs) {
   return stereo_.release(*inputs.stereo);
 }
 
-bool Autonomy::begin_mapping(const TickInputs& inputs) {
-  const Vector3& centre_O_m = estimator_.state().p_OB_m;
+bool Autonomy::begin_localisation(const TickInputs& inputs) {
+  if (!localisation_.enabled() || !walking_ready_) return false;
   if (stereo_.enabled()) {
     const StereoPicture* const picture = stereo_.take();
-    if (picture == nullptr || !walking_ready_) return false;
-    return map_.release(picture->depth, &picture->noise, history_, centre_O_m);
+    if (picture == nullptr) return false;
+    return localisation_.release(picture->depth, &picture->noise,
+                                 history_.at(picture->depth.stamp));
   }
-  if (!inputs.depth_fresh || !walking_ready_) return false;
-  return map_.release(*inputs.depth, nullptr, history_, centre_O_m);
+  if (!inputs.depth_fresh) return false;
+  return localisation_.release(*inputs.depth, nullptr, history_.at(inputs.depth->stamp));
+}
+
+// Dead reckoning was off: O stays where the map is, and the robot is elsewhere in it.
+void Autonomy::publish_localisation() {
+  localisation_.publish();
+  const OdometryShift& shift = localisation_.shift();
+  const Vector3& p_OB_m = estimator_.state().p_OB_m;
+  estimator_.shift(shift(p_OB_m) - p_OB_m, shift.yaw_rad);
+  history_.move(shift);
+}
+
+bool Autonomy::begin_mapping(const TickInputs& inputs) {
+  if (!walking_ready_) return false;
+  const Vector3& centre_O_m = estimator_.state().p_OB_m;
+  if (localisation_.enabled()) {
+    LocalisationTask::Picture picture;
+    return localisation_.take(picture) &&
+           map_.release(*picture.frame, picture.noise, picture.pose, centre_O_m);
+  }
+  if (stereo_.enabled()) {
+    const StereoPicture* const picture = stereo_.take();
+    return picture != nullptr && map_.release(picture->depth, &picture->noise,
+                                              history_.at(picture->depth.stamp), centre_O_m);
+  }
+  return inputs.depth_fresh &&
+         map_.release(*inputs.depth, nullptr, history_.at(inputs.depth->stamp), centre_O_m);
+}
+
+bool Autonomy::begin_terrain(const TickInputs&) {
+  if (!walking_ready_) return false;
+  return terrain_.release(map_.window(), map_.window_digest(), estimator_.state().yaw_rad);
 }
 
 }  // namespace surefoot::autonomy

@@ -9,11 +9,13 @@
 #include "core/actuation/joint_bus.h"
 #include "core/autonomy/config.h"
 #include "core/autonomy/jump_pilot.h"
+#include "core/autonomy/localisation_task.h"
 #include "core/autonomy/map_task.h"
 #include "core/autonomy/mission.h"
 #include "core/autonomy/mpc_task.h"
 #include "core/autonomy/pose_history.h"
 #include "core/autonomy/stereo_task.h"
+#include "core/autonomy/terrain_task.h"
 #include "core/autonomy/tick.h"
 #include "core/control/locomotion.h"
 #include "core/control/recovery.h"
@@ -28,7 +30,10 @@ inline constexpr TimeNs kTickPeriod = milliseconds(2);
 inline constexpr std::uint32_t kMapLatencyTicks =
     5;  // 10 ms from a frame's arrival to its footholds
 
-inline constexpr std::uint32_t kStereoLatencyTicks = 60;  // 120 ms to match a pair
+inline constexpr std::uint32_t kTerrainLatencyTicks = 1;  // of a slice
+
+inline constexpr std::uint32_t kStereoLatencyTicks = 60;        // 120 ms to match a pair
+inline constexpr std::uint32_t kLocalisationLatencyTicks = 20;  // 40 ms to register a picture
 
 class Autonomy {
  public:
@@ -45,21 +50,34 @@ class Autonomy {
   void run_mpc() { mpc_.run(); }
   void publish_mpc() { mpc_.publish(); }
 
-  // The stereo task: what it publishes the mapping task takes in the same tick.
+  // The stereo task: what it publishes the localisation task, or else the mapping task, takes in
+  // the same tick.
   bool begin_stereo(const TickInputs& inputs);
   void run_stereo() { stereo_.run(); }
   void publish_stereo() { stereo_.publish(); }
+
+  // The localisation task: likewise for the mapping task. Publishing moves the estimate.
+  bool begin_localisation(const TickInputs& inputs);
+  void run_localisation() { localisation_.run(); }
+  void publish_localisation();
 
   // The mapping task.
   bool begin_mapping(const TickInputs& inputs);
   void run_mapping() { map_.run(); }
   void publish_mapping() { map_.publish(); }
 
+  // The terrain task: a slice of it. What the mapping task publishes it takes in the same tick.
+  bool begin_terrain(const TickInputs& inputs);
+  void run_terrain() { terrain_.run(); }
+  void publish_terrain() { terrain_.publish(); }
+
   bool finished() const { return mission_.finished(); }
   const Mission& mission() const { return mission_; }
   const estimation::Estimator& estimator() const { return estimator_; }
   const MapTask& map() const { return map_; }
   const StereoTask& stereo() const { return stereo_; }
+  const LocalisationTask& localisation() const { return localisation_; }
+  const TerrainTask& terrain() const { return terrain_; }
   const control::StaticWalk& static_walk() const { return static_walk_; }
   const actuation::JointBus& joint_bus() const { return bus_; }
 
@@ -92,6 +110,9 @@ class Autonomy {
   void report_legs(const estimation::RobotState& state);
   void report_jump();
   void report_stereo();
+  void report_localisation();
+  void report_terrain();
+  void level_on_pad();
 
   robot::RobotModel model_;
   AutonomyConfig config_;
@@ -103,6 +124,8 @@ class Autonomy {
   PoseHistory history_;
   MapTask map_;
   StereoTask stereo_;
+  LocalisationTask localisation_;
+  TerrainTask terrain_;
   StereoTrigger trigger_;
   Mission mission_;
   control::StandUp stand_up_;
@@ -117,6 +140,7 @@ class Autonomy {
   actuation::JointCommands commands_;
   bool walking_ready_ = false;  // stand-up is over, O has its place
   bool has_stood_ = false;      // O's origin is where it stood up first
+  bool on_pad_ = false;         // it has not left the place where it stood up first
   // Ground below the trunk where it last stood upright on its feet: where it gets up again.
   Vector3 footing_O_m_ = Vector3::Zero();
   double collapsed_s_ = 0;

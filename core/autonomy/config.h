@@ -3,7 +3,9 @@
 
 #include "core/actuation/joint_bus.h"
 #include "core/autonomy/jump_pilot_config.h"
+#include "core/autonomy/localisation_config.h"
 #include "core/autonomy/stereo_config.h"
+#include "core/autonomy/terrain_config.h"
 #include "core/base/fixed_vector.h"
 #include "core/base/parameters.h"
 #include "core/control/config.h"
@@ -37,11 +39,14 @@ struct SafetyConfig {
 struct StartPadConfig {
   double length_m = 0;
   double width_m = 0;
+  double level_gain_1_s = 0;  // pull of the feet's plane on attitude and accelerometer bias
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.real("length_m", self.length_m, {0.0, 4.0}, "along the robot, centred on it");
     visit.real("width_m", self.width_m, {0.0, 4.0}, "across");
+    visit.real("level_gain_1_s", self.level_gain_1_s, {0.0, 50.0},
+               "while it first stands, the feet level the IMU; 0: not");
   }
 };
 
@@ -143,8 +148,10 @@ struct AutonomyConfig {
   StartPadConfig start_pad;
   motions::JumpConfig jump;
   JumpPilotConfig jump_pilot;
-  motions::MotionLibrary motions;  // none where the mission does not jump
-  StereoConfig stereo;             // where the robot has a stereo camera
+  motions::MotionLibrary motions;   // none where the mission does not jump
+  StereoConfig stereo;              // where the robot has a stereo camera
+  LocalisationConfig localisation;  // where pictures are registered with each other
+  TerrainConfig terrain;            // where footsteps are planned on completed ground
   MissionConfig mission;
 
   template <class Self, class Visitor>
@@ -160,6 +167,8 @@ struct AutonomyConfig {
     visit.group("jump_pilot", self.jump_pilot);
     visit.list("motions", self.motions);
     visit.optional("stereo", self.stereo);
+    visit.optional("localisation", self.localisation);
+    visit.optional("terrain", self.terrain);
     visit.group("mission", self.mission);
   }
 };

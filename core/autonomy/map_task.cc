@@ -17,15 +17,6 @@ Matrix3 optical_axes() {
   return axes;
 }
 
-// In place: a temporary of this size has no business on the stack.
-void clear(mapping::MapWindow& window) {
-  window.stamp = TimeNs{};
-  window.frames = 0;
-  window.cell_size_m = 0;
-  window.first = mapping::CellIndex{};
-  window.cells.fill(mapping::WindowCell{});
-}
-
 }  // namespace
 
 geometry::Pose<geometry::Body, geometry::DepthCamera> optical_pose(
@@ -54,8 +45,8 @@ Status MapTask::reset(const mapping::MappingConfig& config,
   frame_.depth.fill(0);
   has_noise_ = false;
   noise_.factors.fill(0);
-  clear(working_);
-  clear(window_);
+  working_.clear();
+  window_.clear();
   window_digest_ = window_.digest();
   watches_obstacles_ = false;
   pool_.reset(obstacles::ObstacleConfig{});
@@ -81,9 +72,8 @@ Status MapTask::assume_pad(const mapping::AssumedPad& pad) {
 }
 
 bool MapTask::release(const hal::DepthFrame& frame, const mapping::DepthNoise* noise,
-                      const PoseHistory& history, const Vector3& window_centre_O_m) {
+                      const Result<PastPose>& pose, const Vector3& window_centre_O_m) {
   if (!enabled_) return false;
-  const Result<PastPose> pose = history.at(frame.stamp);
   if (!pose.ok()) {
     ++counters_.frames_without_pose;
     return false;
@@ -99,18 +89,18 @@ bool MapTask::release(const hal::DepthFrame& frame, const mapping::DepthNoise* n
   return true;
 }
 
-mapping::SelfModel MapTask::self_model() const {
+mapping::SelfModel self_model(const robot::RobotModel& model, const PastPose& pose) {
   mapping::SelfModel self;
-  self.X_OB.rotation.matrix = geometry::to_matrix(pose_.q_OB);
-  self.X_OB.origin.m = pose_.p_OB_m;
-  self.trunk_size_m = model_.trunk_size_m;
+  self.X_OB.rotation.matrix = geometry::to_matrix(pose.q_OB);
+  self.X_OB.origin.m = pose.p_OB_m;
+  self.trunk_size_m = model.trunk_size_m;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     Vector3 q;
     for (std::size_t i = 0; i < robot::kJointsPerLeg; ++i) {
-      q[static_cast<Eigen::Index>(i)] = pose_.joint_rad[robot::joint_index(leg, i)];
+      q[static_cast<Eigen::Index>(i)] = pose.joint_rad[robot::joint_index(leg, i)];
     }
-    const robot::LegPoints points = robot::leg_points_B(model_, leg, q);
-    const double radii[3] = {model_.thigh_radius_m, model_.thigh_radius_m, model_.shank_radius_m};
+    const robot::LegPoints points = robot::leg_points_B(model, leg, q);
+    const double radii[3] = {model.thigh_radius_m, model.thigh_radius_m, model.shank_radius_m};
     for (std::size_t link = 0; link < 3; ++link) {
       mapping::SelfCapsule capsule;
       capsule.a_O_m = self.X_OB.rotation.matrix * points.p_B_m[link] + self.X_OB.origin.m;
@@ -123,7 +113,7 @@ mapping::SelfModel MapTask::self_model() const {
 }
 
 void MapTask::run() {
-  const mapping::SelfModel self = self_model();
+  const mapping::SelfModel self = self_model(model_, pose_);
   mapping::IntegrationReport report;
   const Status status =
       mapper_.integrate(frame_, self.X_OB * X_BC_, self, &report, has_noise_ ? &noise_ : nullptr);

@@ -36,6 +36,9 @@ struct MapCamera {
 geometry::Pose<geometry::Body, geometry::DepthCamera> optical_pose(const robot::SensorMount& mount);
 MapCamera depth_map_camera(const robot::RobotModel& model);
 
+// What a camera must not take for ground: the robot's own trunk and legs in a past pose.
+mapping::SelfModel self_model(const robot::RobotModel& model, const PastPose& pose);
+
 class MapTask {
  public:
   // kInvalid: configuration out of its domain.
@@ -56,10 +59,10 @@ class MapTask {
     return mapper_.forget(x_O_m, y_O_m, half_side_m);
   }
 
-  // Copies frame, noise (null: the sensor's) and pose. false: mapping is off or the frame's stamp
-  // has no pose (counted).
+  // Copies frame, noise (null: the sensor's) and pose. false: mapping is off or there is no pose of
+  // the frame's stamp (counted).
   bool release(const hal::DepthFrame& frame, const mapping::DepthNoise* noise,
-               const PoseHistory& history, const Vector3& window_centre_O_m);
+               const Result<PastPose>& pose, const Vector3& window_centre_O_m);
   // May run anywhere between release and publish.
   void run();
   void publish();
@@ -72,8 +75,6 @@ class MapTask {
   std::uint64_t window_digest() const { return window_digest_; }
 
  private:
-  mapping::SelfModel self_model() const;
-
   robot::RobotModel model_;
   bool enabled_ = false;
   geometry::Pose<geometry::Body, geometry::DepthCamera> X_BC_;

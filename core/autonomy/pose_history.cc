@@ -14,6 +14,15 @@ void PoseHistory::push(const estimation::RobotState& state) {
   poses_.push_overwrite(pose);
 }
 
+void PoseHistory::move(const OdometryShift& shift) {
+  const geometry::Quaternion turn = geometry::to_quaternion(geometry::rotation_z(shift.yaw_rad));
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    PastPose& pose = poses_[i];
+    pose.p_OB_m = shift(pose.p_OB_m);
+    pose.q_OB = geometry::normalised(turn * pose.q_OB);
+  }
+}
+
 Result<PastPose> PoseHistory::at(TimeNs stamp) const {
   if (poses_.empty()) return Status::kUnavailable;
   if (stamp < poses_.front().stamp || stamp > poses_.back().stamp) return Status::kOutOfRange;

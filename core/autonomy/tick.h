@@ -5,6 +5,8 @@
 #include <cstdint>
 
 #include "core/autonomy/jump_pilot.h"
+#include "core/autonomy/localisation_counters.h"
+#include "core/autonomy/terrain_counters.h"
 #include "core/base/fields.h"
 #include "core/base/fixed_vector.h"
 #include "core/base/time.h"
@@ -173,6 +175,36 @@ struct StereoTelemetry {
   }
 };
 
+// How far dead reckoning was off, by the pictures.
+struct LocalisationTelemetry {
+  LocalisationCounters counters;
+  std::array<double, 3> shift_O_m{};  // by the picture published last
+  double yaw_rad = 0;
+  std::int32_t observed_directions = 0;
+  double residual_m = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("counters", self.counters);
+    visit("shift_O_m", self.shift_O_m);
+    visit("yaw_rad", self.yaw_rad);
+    visit("observed_directions", self.observed_directions);
+    visit("residual_m", self.residual_m);
+  }
+};
+
+// The ground that footsteps are planned on.
+struct TerrainTelemetry {
+  TerrainCounters counters;
+  std::uint64_t map_digest = 0;  // hash of the published terrain map
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("counters", self.counters);
+    visit("map_digest", self.map_digest);
+  }
+};
+
 // The jump pilot: what it does, and the edge it looks at.
 struct JumpTelemetry {
   PilotStage pilot = PilotStage::kWatch;
@@ -210,6 +242,8 @@ struct Telemetry {
   ObstacleTelemetry obstacles;
   JumpTelemetry jump;
   StereoTelemetry stereo;
+  LocalisationTelemetry localisation;
+  TerrainTelemetry terrain;
   std::uint64_t depth_frames_mapped = 0;
   std::uint64_t map_digest = 0;  // hash of the published map window
   std::uint64_t replies_missed = 0;
@@ -230,6 +264,8 @@ struct Telemetry {
     visit("obstacles", self.obstacles);
     visit("jump", self.jump);
     visit("stereo", self.stereo);
+    visit("localisation", self.localisation);
+    visit("terrain", self.terrain);
     visit("depth_frames_mapped", self.depth_frames_mapped);
     visit("map_digest", self.map_digest);
     visit("replies_missed", self.replies_missed);

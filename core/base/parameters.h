@@ -62,6 +62,10 @@ struct RangeCheck {
   void optional(const char* key, const Group& value) {
     if (value.present) group(key, value);
   }
+  template <class Groups>
+  void list(const char* key, const Groups& values) {
+    for (const auto& value : values) group(key, value);
+  }
 
   bool good = true;
 };

@@ -47,6 +47,10 @@ class RingBuffer {
     SUREFOOT_ASSERT(i < size_);
     return items_[(first_ + i) % kCapacity];
   }
+  constexpr T& operator[](std::size_t i) {
+    SUREFOOT_ASSERT(i < size_);
+    return items_[(first_ + i) % kCapacity];
+  }
   constexpr const T& front() const { return (*this)[0]; }
   constexpr const T& back() const { return (*this)[size_ - 1]; }
 

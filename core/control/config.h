@@ -148,6 +148,11 @@ struct StaticWalkConfig {
   double foot_speed_m_s = 0;   // mean speed on the way up, over and down
   double max_stride_m = 0;     // way of the trunk while each leg steps once
   double margin_m = 0;         // of the centre of mass inside the triangle of the standing feet
+  double lift_margin_m = 0;    // of the capture point in that triangle, for a foot to lift off
+  double patience_s = 0;       // with the trunk not there yet, before the step is planned anew
+  double slack_m = 0;          // a standing foot farther off is held where it is now
+  double caution = 0;          // share of its speed at which the trunk shifts after a mishap,
+  int cautious_steps = 0;      // for so many steps
   double slip_m = 0;           // a standing foot moved by more: the one in the air comes down
 
   template <class Self, class Visitor>
@@ -159,6 +164,12 @@ struct StaticWalkConfig {
     visit.real("foot_speed_m_s", self.foot_speed_m_s, {0.01, 5.0}, "mean, of a swinging foot");
     visit.real("max_stride_m", self.max_stride_m, {0.005, 2.0}, "way of the trunk per four steps");
     visit.real("margin_m", self.margin_m, {0.0, 0.5}, "of the centre of mass in the triangle");
+    visit.real("lift_margin_m", self.lift_margin_m, {0.0, 0.5},
+               "of the capture point in the triangle, for a foot to lift off");
+    visit.real("patience_s", self.patience_s, {0.02, 60.0}, "before a step is planned anew");
+    visit.real("slack_m", self.slack_m, {0.0005, 0.5}, "a standing foot farther off is let go");
+    visit.real("caution", self.caution, {0.1, 1.0}, "share of the trunk's speed after a mishap");
+    visit.integer("cautious_steps", self.cautious_steps, {0, 100}, "for so many steps");
     visit.real("slip_m", self.slip_m, {0.001, 0.5}, "of a standing foot: put the other one down");
   }
 };

@@ -15,6 +15,8 @@ namespace {
 constexpr double kFeelsGround = 0.5;     // of a swing: before, the toe has caught on something
 constexpr double kShortestShift = 0.25;  // of shift_s: the load still goes from foot to foot
 constexpr double kMaxHeadingLag_rad = 0.15;
+constexpr double kLost_s = 0.03;     // without contact: the foot has lost its ground
+constexpr double kTipping_m = 0.01;  // of the capture point beyond the triangle
 
 }  // namespace
 
@@ -29,6 +31,7 @@ void StaticWalk::reset(const ControlConfig& config, const robot::RobotModel& mod
   whole_body_.reset(config.whole_body, model);
   stand();
   feet_O_m_.fill(Vector3::Zero());
+  taken_O_m_.fill(Vector3::Zero());
   counters_ = StaticWalkCounters{};
   joints_ = actuation::JointCommands{};
 }
@@ -39,6 +42,7 @@ void StaticWalk::stand() {
   shifted_ = false;
   velocity_ = VelocityCommand{};
   blocked_s_ = 0;
+  cautious_ = 0;
   legs_.fill(LegStatus{});
   load_.fill(1.0);
 }
@@ -74,6 +78,7 @@ const actuation::JointCommands& StaticWalk::update(const estimation::RobotState&
   const bool filled = terrain != nullptr && terrain->ground.cell_size_m > 0;
   const Ground ground{filled ? &terrain->ground : window, filled ? terrain : nullptr, rule};
   map_offset_.update(state, legs_, ground.window);
+  follow_feet(state, step_s);
   shifted_ = false;
   progress_ = math::clamp(progress_ + step_s / duration_s_, 0.0, 1.0);
   follow(velocity, step_s);
@@ -90,15 +95,26 @@ const actuation::JointCommands& StaticWalk::update(const estimation::RobotState&
         blocked_s_ += step_s;
       }
       break;
-    case Stage::kShift:
-      load_[leg()] = 1.0 - quintic(progress_).value;
-      shifted_ = progress_ >= 1.0;
-      if (shifted_) lift(state, ground.window);
-      break;
+    case Stage::kShift: shift(state, ground.window, step_s); break;
     case Stage::kSwing: swing(state, step_s); break;
   }
   command(state);
   return joints_;
+}
+
+// A foot lifts off when the trunk is where the others carry it, and comes to rest there.
+void StaticWalk::shift(const estimation::RobotState& state, const mapping::MapWindow* window,
+                       double step_s) {
+  load_[leg()] = 1.0 - quintic(progress_).value;
+  if (progress_ < 1.0) return;
+  shifted_ = may_lift(state);
+  if (shifted_) return lift(state, window);
+  waited_s_ += step_s;
+  if (waited_s_ < config_.static_walk.patience_s) return;
+  ++counters_.waited;
+  be_cautious();
+  load_[leg()] = 1.0;
+  stage_ = Stage::kStand;
 }
 
 double StaticWalk::cycle_s() const {
@@ -132,6 +148,55 @@ Vector3 StaticWalk::nominal_O_m() const {
 // Where the feet are is where they stand from now on.
 void StaticWalk::take_feet(const estimation::RobotState& state) {
   for (std::size_t i = 0; i < robot::kLegs; ++i) feet_O_m_[i] = state.feet[i].p_O_m;
+  taken_O_m_ = feet_O_m_;
+  lost_s_.fill(0);
+}
+
+// A foot that slides off an edge stands where it comes to rest: held where it was it would lift the
+// trunk off its other feet. One without ground under it goes down until it feels some.
+void StaticWalk::follow_feet(const estimation::RobotState& state, double step_s) {
+  for (std::size_t i = 0; i < robot::kLegs; ++i) {
+    if (legs_[i].mode != LegMode::kStance) continue;
+    const estimation::FootState& foot = state.feet[i];
+    lost_s_[i] = foot.in_contact || load_[i] < 1.0 ? 0.0 : lost_s_[i] + step_s;
+    if (lost_s_[i] > kLost_s) {
+      const double lowest_m = taken_O_m_[i][2] - config_.swing.search_depth_m;
+      feet_O_m_[i][2] =
+          std::max(lowest_m, feet_O_m_[i][2] - config_.swing.search_speed_m_s * step_s);
+      continue;
+    }
+    const Vector3 off = foot.p_O_m - feet_O_m_[i];
+    const double off_m = math::sqrt(off.squaredNorm());
+    const double slack_m = config_.static_walk.slack_m;
+    if (foot.in_contact && off_m > slack_m) feet_O_m_[i] += off * (1.0 - slack_m / off_m);
+  }
+}
+
+// Where the centre of mass would come to rest over a foot put there now (linear inverted pendulum).
+Vector2 StaticWalk::capture_point_O_m(const estimation::RobotState& state) const {
+  const double rate_1_s = math::sqrt(kGravity_m_s2 / config_.body.height_m);
+  return state.p_OB_m.head<2>() + centre_offset_O_m(state) + state.v_OB_m_s.head<2>() / rate_1_s;
+}
+
+// What made one foot slip may make the next: the trunk moves slowly for a while.
+void StaticWalk::be_cautious() { cautious_ = config_.static_walk.cautious_steps; }
+
+bool StaticWalk::may_lift(const estimation::RobotState& state) const {
+  for (std::size_t i = 0; i < robot::kLegs; ++i) {
+    if (i != leg() && !state.feet[i].in_contact) return false;
+  }
+  const planning::Triangle triangle = planning::standing_triangle(feet_O_m_, turn_);
+  constexpr double kOfRoom = 0.5;
+  planning::SupportRegion region;
+  const double margin_m =
+      std::min(config_.static_walk.lift_margin_m, kOfRoom * triangle.inradius_m());
+  return ok(region.add(triangle, margin_m)) && region.contains(capture_point_O_m(state));
+}
+
+bool StaticWalk::is_tipping(const estimation::RobotState& state) const {
+  planning::SupportRegion region;
+  return ok(region.add(planning::standing_triangle(feet_O_m_, turn_), -kTipping_m)) &&
+         !region.contains(capture_point_O_m(state));
 }
 
 // false: there is no foothold.
@@ -166,9 +231,18 @@ void StaticWalk::begin_shift(const estimation::RobotState& state) {
   from_ = pose_now().pose;
   plan_pose(state);
   const StaticWalkConfig& config = config_.static_walk;
-  const double way_m = (to_.centre_O_m - from_.centre_O_m).norm();
-  duration_s_ = std::max(kShortestShift * config.shift_s, way_m / config.shift_speed_m_s);
+  // Turning moves the hips as far as the trunk is long.
+  const Vector3 turn_rad = to_.roll_pitch_yaw_rad - from_.roll_pitch_yaw_rad;
+  const double lever_m = robot::hip_joint_B_m(model_, robot::kFrontLeft).norm();
+  const Vector3 way(math::sqrt((to_.centre_O_m - from_.centre_O_m).squaredNorm()),
+                    to_.height_O_m - from_.height_O_m,
+                    lever_m * math::sqrt(math::square(turn_rad[0]) + math::square(turn_rad[1])));
+  const double way_m = math::sqrt(way.squaredNorm());
+  const double speed_m_s = config.shift_speed_m_s * (cautious_ > 0 ? config.caution : 1.0);
+  cautious_ = std::max(0, cautious_ - 1);
+  duration_s_ = std::max(kShortestShift * config.shift_s, way_m / speed_m_s);
   progress_ = 0;
+  waited_s_ = 0;
   stage_ = Stage::kShift;
 }
 
@@ -228,7 +302,12 @@ void StaticWalk::swing(const estimation::RobotState& state, double step_s) {
     if (foot.in_contact && status.swing_progress >= kFeelsGround) return put_down(state);
     if (has_slipped(state)) {
       ++counters_.slipped;
+      be_cautious();
       take_feet(state);  // they are held where they are now: one slip is answered once
+      begin_search(foot.p_O_m);
+    } else if (is_tipping(state)) {
+      ++counters_.tipped;
+      be_cautious();
       begin_search(foot.p_O_m);
     } else if (status.swing_progress >= 1.0) {
       begin_search(status.path.landing_O_m);
@@ -254,7 +333,7 @@ bool StaticWalk::has_slipped(const estimation::RobotState& state) const {
   const double limit_m2 = math::square(config_.static_walk.slip_m);
   for (std::size_t i = 0; i < robot::kLegs; ++i) {
     if (i == leg()) continue;
-    if ((state.feet[i].p_O_m - feet_O_m_[i]).squaredNorm() > limit_m2) return true;
+    if ((state.feet[i].p_O_m - taken_O_m_[i]).squaredNorm() > limit_m2) return true;
   }
   return false;
 }
@@ -262,6 +341,7 @@ bool StaticWalk::has_slipped(const estimation::RobotState& state) const {
 // To where it has stood, which bears a foot.
 void StaticWalk::go_back(const estimation::RobotState& state) {
   ++counters_.missed;
+  be_cautious();
   LegStatus& status = legs_[leg()];
   const Vector3 home = status.path.lift_off_O_m;
   status.path.lift_off_O_m = state.feet[leg()].p_O_m;
@@ -278,6 +358,7 @@ void StaticWalk::put_down(const estimation::RobotState& state) {
   status.height_above_landing_m = 0;
   status.anchor_O_m = state.feet[leg()].p_O_m;
   feet_O_m_[leg()] = status.anchor_O_m;
+  taken_O_m_[leg()] = status.anchor_O_m;
   load_[leg()] = 1;
   ++counters_.steps;
   turn_ = (turn_ + 1) % robot::kLegs;

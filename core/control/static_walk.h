@@ -44,6 +44,8 @@ struct StaticWalkCounters {
   std::uint64_t narrow = 0;   // the margin had to be cut to find room over the feet
   std::uint64_t slipped = 0;  // a standing foot gave way while another was in the air
   std::uint64_t lowered = 0;  // a stance leg could not have reached: the trunk was lowered
+  std::uint64_t tipped = 0;   // the trunk went over its feet: the one in the air came down
+  std::uint64_t waited = 0;   // the trunk did not come to where the foot may lift: planned anew
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -52,6 +54,8 @@ struct StaticWalkCounters {
     visit("narrow", self.narrow);
     visit("slipped", self.slipped);
     visit("lowered", self.lowered);
+    visit("tipped", self.tipped);
+    visit("waited", self.waited);
   }
 };
 
@@ -118,6 +122,12 @@ class StaticWalk {
   void lift(const estimation::RobotState& state, const mapping::MapWindow* window);
   void swing(const estimation::RobotState& state, double step_s);
   bool has_slipped(const estimation::RobotState& state) const;
+  void follow_feet(const estimation::RobotState& state, double step_s);
+  Vector2 capture_point_O_m(const estimation::RobotState& state) const;
+  void be_cautious();
+  bool may_lift(const estimation::RobotState& state) const;
+  bool is_tipping(const estimation::RobotState& state) const;
+  void shift(const estimation::RobotState& state, const mapping::MapWindow* window, double step_s);
   void begin_search(const Vector3& from_O_m);
   void go_back(const estimation::RobotState& state);
   void put_down(const estimation::RobotState& state);
@@ -141,10 +151,14 @@ class StaticWalk {
   double duration_s_ = 1;  // of the shift
   planning::TrunkPose from_;
   planning::TrunkPose to_;
-  planning::Feet feet_O_m_;                  // where the feet stand, the step's landing included
-  std::array<double, robot::kLegs> load_{};  // share of the load that a foot may carry, 0 to 1
-  VelocityCommand velocity_;                 // its mean over about a cycle
-  double yaw_rad_ = 0;                       // the heading to keep
+  planning::Feet feet_O_m_;                    // where the feet stand, the step's landing included
+  planning::Feet taken_O_m_;                   // where they stood when the step began
+  std::array<double, robot::kLegs> lost_s_{};  // without contact while they should stand
+  int cautious_ = 0;                           // steps still to be made slowly
+  double waited_s_ = 0;                        // for the trunk, after its shift
+  std::array<double, robot::kLegs> load_{};    // share of the load that a foot may carry, 0 to 1
+  VelocityCommand velocity_;                   // its mean over about a cycle
+  double yaw_rad_ = 0;                         // the heading to keep
   double blocked_s_ = 0;
   LegStatuses legs_;
   StaticWalkCounters counters_;

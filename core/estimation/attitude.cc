@@ -60,7 +60,8 @@ Vector3 AttitudeEstimator::gravity_correction(const Vector3& f) const {
 
 Status AttitudeEstimator::update(const hal::ImuSample& sample, bool lying_still, bool feet_carry) {
   const Vector3 gyro_B = R_BI_ * from_array(sample.angular_velocity_I_rad_s);
-  const Vector3 force_B = R_BI_ * from_array(sample.specific_force_I_m_s2);
+  const Vector3 force_B =
+      R_BI_ * from_array(sample.specific_force_I_m_s2) - accelerometer_bias_B_m_s2_;
   if (!finite(gyro_B) || !finite(force_B)) return Status::kInvalid;
   if (sample.stamp <= stamp_) return Status::kInvalid;
   if (!initialised_) {
@@ -95,6 +96,13 @@ void AttitudeEstimator::level_by_feet(const Vector3& correction_O_m_s) {
   const Vector3 error_O_rad_s = Vector3::UnitZ().cross(correction_O_m_s) / kGravity_m_s2;
   gyro_bias_B_rad_s_ -= R_OB_.transpose() * error_O_rad_s * config_.bias_gain_1_s2;
   turn_O(error_O_rad_s * config_.correction_gain_1_s);
+}
+
+void AttitudeEstimator::level(const Vector3& up_B, double share) {
+  if (!initialised_) return;
+  const Vector3 error_O_rad = (R_OB_ * up_B).cross(Vector3::UnitZ());
+  turn_O(error_O_rad * share);
+  accelerometer_bias_B_m_s2_ += (specific_force_B_m_s2_ - up_B * kGravity_m_s2) * share;
 }
 
 void AttitudeEstimator::correct_yaw(double yaw_rad, double bias_rad_s) {

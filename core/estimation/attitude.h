@@ -32,6 +32,10 @@ class AttitudeEstimator {
   // average it is the share of gravity that a wrong "up" takes for acceleration.
   void level_by_feet(const Vector3& correction_O_m_s);
 
+  // At rest on ground that is known to be level: up_B says where up is, whatever the accelerometer
+  // says. Turns the estimate by `share` of the difference and learns the accelerometer's bias.
+  void level(const Vector3& up_B, double share);
+
   // Turns about O's up axis and shifts the gyro's bias about it.
   void correct_yaw(double yaw_rad, double bias_rad_s);
   // Turns the whole estimate about the vertical so that the heading becomes yaw_rad.
@@ -42,9 +46,10 @@ class AttitudeEstimator {
   const Matrix3& R_OB() const { return R_OB_; }
   // Bias removed.
   const Vector3& angular_velocity_B_rad_s() const { return angular_velocity_B_rad_s_; }
-  // At the trunk's origin: the lever arm's centripetal part is removed.
+  // At the trunk's origin: bias and the lever arm's centripetal part are removed.
   const Vector3& specific_force_B_m_s2() const { return specific_force_B_m_s2_; }
   const Vector3& gyro_bias_B_rad_s() const { return gyro_bias_B_rad_s_; }
+  const Vector3& accelerometer_bias_B_m_s2() const { return accelerometer_bias_B_m_s2_; }
   TimeNs stamp() const { return stamp_; }
 
  private:
@@ -67,6 +72,7 @@ class AttitudeEstimator {
   Vector3 angular_velocity_B_rad_s_ = Vector3::Zero();
   Vector3 specific_force_B_m_s2_ = Vector3::Zero();
   Vector3 gyro_bias_B_rad_s_ = Vector3::Zero();
+  Vector3 accelerometer_bias_B_m_s2_ = Vector3::Zero();
 };
 
 }  // namespace surefoot::estimation

@@ -34,6 +34,23 @@ void Estimator::set_yaw(double yaw_rad) {
   place_feet();
 }
 
+void Estimator::level_on_pad(double share) {
+  for (const FootState& foot : state_.feet) {
+    if (!foot.in_contact) return;
+  }
+  // Across the diagonals: with four feet the normal of the least-squares plane is near enough.
+  const auto& feet = state_.feet;
+  const Vector3 rising = feet[robot::kFrontLeft].p_B_m - feet[robot::kHindRight].p_B_m;
+  const Vector3 falling = feet[robot::kHindLeft].p_B_m - feet[robot::kFrontRight].p_B_m;
+  const Vector3 up_B = rising.cross(falling);
+  attitude_.level(up_B / math::sqrt(up_B.squaredNorm()), share);
+}
+
+void Estimator::shift(const Vector3& shift_O_m, double yaw_rad) {
+  attitude_.correct_yaw(yaw_rad, 0.0);
+  body_.move(shift_O_m, yaw_rad);
+}
+
 void Estimator::place_feet() {
   for (FootState& foot : state_.feet) foot.p_O_m = state_.p_OB_m + state_.R_OB * foot.p_B_m;
 }

@@ -61,6 +61,15 @@ class Estimator {
   // nothing changed.
   Status relocate(TimeNs now);
 
+  // The robot stands at rest on ground that is known to be level: the feet tell where up is. A
+  // share of what is off is put right, and of the accelerometer's bias learned. Nothing happens
+  // while a foot is in the air.
+  void level_on_pad(double share);
+
+  // O and what is in it were off: the trunk is `shift_O_m` from where it was believed to be, and
+  // turned about up by yaw_rad. Whoever keeps poses of O moves them too.
+  void shift(const Vector3& shift_O_m, double yaw_rad);
+
   // Declares where the trunk is: O's origin lies on the ground below it. Whoever keeps poses of O
   // forgets them now.
   void place(const Vector3& p_OB_m);

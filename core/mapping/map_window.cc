@@ -128,6 +128,14 @@ Result<PatchStatistics> MapWindow::patch(double x_O_m, double y_O_m, double radi
   return statistics;
 }
 
+void MapWindow::clear() {
+  stamp = TimeNs{};
+  frames = 0;
+  cell_size_m = 0;
+  first = CellIndex{};
+  cells.fill(WindowCell{});
+}
+
 std::uint64_t MapWindow::digest() const {
   Fnv64 hash;
   FieldHasher hasher(hash);

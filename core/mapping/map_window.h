@@ -53,6 +53,10 @@ struct MapWindow {
   CellIndex first;           // cell with the smallest indices
   std::array<WindowCell, static_cast<std::size_t>(kWindowSide) * kWindowSide> cells{};
 
+  // As before the first publication, and every page written. In place: a temporary of this size has
+  // no business on the stack.
+  void clear();
+
   bool contains(CellIndex i) const;
   // nullptr: outside.
   const WindowCell* find(CellIndex i) const;

@@ -5,7 +5,7 @@
 namespace surefoot::planning {
 namespace {
 
-constexpr std::int32_t kMaxFootRadius_cells = 3;
+constexpr std::int32_t kMaxEdgeReach_cells = 4;
 
 std::size_t place_in_window(const mapping::MapWindow& window, mapping::CellIndex i) {
   return static_cast<std::size_t>(i.iy - window.first.iy) * mapping::kWindowSide +
@@ -19,9 +19,8 @@ std::size_t wrapped(std::int32_t i, std::int32_t side) {
 
 }  // namespace
 
-void FootstepCells::reset(const FootstepConfig& config, double foot_radius_m) {
+void FootstepCells::reset(const FootstepConfig& config) {
   config_ = config;
-  foot_radius_m_ = foot_radius_m;
   map_ = nullptr;
 }
 
@@ -60,28 +59,28 @@ void FootstepCells::rate(FootstepCell& cell) const {
   }
   cell.usable = true;
   cell.height_m = height_m / known;  // the middle one has a height
-  const double edge_m = highest_m(cell.index) - cell.height_m;
-  cell.cost_m = config_.terrain_weight_m * terrain + config_.spread_weight * (spread_m / known);
-  if (edge_m > 0) cell.cost_m += config_.edge_weight * edge_m;
+  cell.cost_m = config_.terrain_weight_m * terrain + config_.spread_weight * (spread_m / known) +
+                config_.edge_weight * edge_m(cell.index, cell.height_m);
 }
 
-// Of the cells with height whose centres the foot covers.
-double FootstepCells::highest_m(mapping::CellIndex index) const {
+// The most that the ground around stands up over a height or falls off below it, over the cells with
+// height whose centres are within reach.
+double FootstepCells::edge_m(mapping::CellIndex index, double height_m) const {
   const mapping::MapWindow& ground = map_->ground;
-  const double radius_cells = foot_radius_m_ / ground.cell_size_m;
-  const std::int32_t n = math::clamp(static_cast<std::int32_t>(math::clamp(radius_cells, 0.0, 9.0)),
-                                     std::int32_t{0}, kMaxFootRadius_cells);
-  double highest_m = static_cast<double>(ground.at(index).height_m);
+  const double reach_cells = config_.edge_reach_m / ground.cell_size_m;
+  const std::int32_t n = static_cast<std::int32_t>(
+      math::clamp(reach_cells, 0.0, static_cast<double>(kMaxEdgeReach_cells)));
+  double edge_m = 0;
   for (std::int32_t dy = -n; dy <= n; ++dy) {
     for (std::int32_t dx = -n; dx <= n; ++dx) {
-      if (static_cast<double>(dx * dx + dy * dy) > radius_cells * radius_cells) continue;
+      if (static_cast<double>(dx * dx + dy * dy) > reach_cells * reach_cells) continue;
       const mapping::WindowCell* cell = ground.find(index + mapping::CellIndex{dx, dy});
       if (cell == nullptr || !cell->has_height()) continue;
-      const auto height_m = static_cast<double>(cell->height_m);
-      if (height_m > highest_m) highest_m = height_m;
+      const double off_m = math::magnitude(static_cast<double>(cell->height_m) - height_m);
+      if (off_m > edge_m) edge_m = off_m;
     }
   }
-  return highest_m;
+  return edge_m;
 }
 
 }  // namespace surefoot::planning

@@ -25,7 +25,7 @@ struct FootstepCell {
 
 class FootstepCells {
  public:
-  void reset(const FootstepConfig& config, double foot_radius_m);
+  void reset(const FootstepConfig& config);
   // Forgets all ratings. The map must stay while at() is called.
   void start(const terrain::TerrainMap& map);
   // Outside the window: not usable.
@@ -35,10 +35,9 @@ class FootstepCells {
   static constexpr std::int32_t kSide = 32;
 
   void rate(FootstepCell& cell) const;
-  double highest_m(mapping::CellIndex index) const;
+  double edge_m(mapping::CellIndex index, double height_m) const;
 
   FootstepConfig config_;
-  double foot_radius_m_ = 0;
   const terrain::TerrainMap* map_ = nullptr;
   std::array<FootstepCell, static_cast<std::size_t>(kSide) * kSide> cells_{};
 };

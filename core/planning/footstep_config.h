@@ -25,7 +25,8 @@ struct FootstepConfig {
   // What it costs.
   double terrain_weight_m = 0;   // terrain cost 1
   double spread_weight = 0;      // of the filled height
-  double edge_weight = 0;        // highest cell within the foot's radius above the height under it
+  double edge_reach_m = 0;       // so far around the foot's middle edges count
+  double edge_weight = 0;        // what stands up or falls off there
   double deviation_scale_m = 0;  // this far off the nominal place costs as much; quadratic
   double rise_weight = 0;        // rise or drop
   double wanted_inradius_m = 0;  // of that triangle
@@ -46,7 +47,9 @@ struct FootstepConfig {
     visit.real("min_inradius_m", self.min_inradius_m, {0.001, 0.5}, "of the next step's triangle");
     visit.real("terrain_weight_m", self.terrain_weight_m, {0.0, 10.0}, "detour for terrain cost 1");
     visit.real("spread_weight", self.spread_weight, {0.0, 100.0}, "per metre of spread");
-    visit.real("edge_weight", self.edge_weight, {0.0, 100.0}, "per metre that an edge stands up");
+    visit.real("edge_reach_m", self.edge_reach_m, {0.0, 0.1}, "so far around a foot edges count");
+    visit.real("edge_weight", self.edge_weight, {0.0, 100.0},
+               "per metre that the ground stands up or falls off there");
     visit.real("deviation_scale_m", self.deviation_scale_m, {0.001, 1.0},
                "so far off the nominal place costs as much; quadratic");
     visit.real("rise_weight", self.rise_weight, {0.0, 100.0}, "per metre of rise or drop");

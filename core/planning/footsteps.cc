@@ -50,7 +50,7 @@ void FootstepPlanner::reset(const FootstepConfig& config, const robot::RobotMode
   config_.radius_cells = math::clamp(config.radius_cells, 0, kMaxFootstepRadius_cells);
   model_ = model;
   shape_ = shape;
-  cells_.reset(config_, model.foot_radius_m);
+  cells_.reset(config_);
   list_offsets();
 }
 

@@ -32,6 +32,18 @@ Status Cloud::reset(double cell_m) {
   return Status::kOk;
 }
 
+void Cloud::touch() {
+  cells_.fill(Cell{});
+  means_m_.fill(Vector3::Zero());
+  surfaces_.fill(Surface::kUnasked);
+  surfels_.fill(Surfel{});
+  keys_.fill(0);
+  occupied_.fill(0);
+  for (Block& block : blocks_) block.fill(kNone);
+  const Status emptied = reset(cell_m_[0] > 0 ? cell_m_[0] : 1.0);
+  SUREFOOT_ASSERT(ok(emptied));
+}
+
 std::uint16_t Cloud::find(int level, const CellPlace& place) const {
   const std::uint16_t block = find_block(block_key(level, block_of(place)));
   return block == kNoBlock ? kNone : blocks_[block][place_in_block(place)];

@@ -57,6 +57,9 @@ class Cloud {
   // Empties the cloud. kInvalid: cell_m is not above 0 or not finite; nothing changed.
   Status reset(double cell_m);
 
+  // Writes every page, so that no later call meets one for the first time. Empties the cloud.
+  void touch();
+
   // Not after finish(). kInvalid: not finite. kOutOfRange: beyond kMaxCellIndex cells.
   // kExhausted: it needs a cell and there is none left. The cloud is unchanged then, but for
   // dropped_points(). Points of the same cells may come in any number.

@@ -119,7 +119,8 @@ void Aligner::find_pairs(Cloud& source, Cloud& target, int level) {
     pair.normal = sum / math::sqrt(sum.squaredNorm());
     pair.q_m = to->position_m;
     pair.variance_m2 = from.variance_m2 + to->variance_m2 + floor_m2;
-    pair.tilt_variance_rad2 = 0.25 * (from.tilt_variance_rad2 + to->tilt_variance_rad2);
+    pair.tilt_variance_rad2 = 0.25 * (from.tilt_variance_rad2 + to->tilt_variance_rad2) +
+                              math::square(config_.normal_error_rad);
     overlap += from.overlap;
     pairs_[pair_count_++] = pair;
   }
@@ -251,6 +252,13 @@ int Aligner::finest_level(Cloud& source) {
     if (static_cast<double>(surfels) >= kMinSurfels * static_cast<double>(wanted)) break;
   }
   return widest;
+}
+
+void Aligner::touch() {
+  chosen_.fill(0);
+  pairs_.fill(Pair{});
+  weights_.fill(0);
+  sorted_.fill(0);
 }
 
 Status Aligner::align(Cloud& source, Cloud& target, const Prior& prior, Registration& out) {

@@ -49,6 +49,8 @@ class Aligner {
   // kInvalid: see validate(); nothing changed.
   Status configure(const RegistrationConfig& config);
   const RegistrationConfig& config() const { return config_; }
+  // Writes every page, so that no later call meets one for the first time.
+  void touch();
 
   // Moves `source` onto `target`, starting at the prior. Both clouds are finished and have the
   // configuration's cell size; they are changed only in what surfels they have computed.

@@ -23,6 +23,9 @@ struct RegistrationConfig {
   double min_overlap = 0.15;          // share of the source surfels with a partner; less: kNotFound
   double max_normal_angle_rad = 0.8;  // between partners
   double surface_error = 0.03;        // what a surfel misses of the surface, in cells
+  // Of the sensor's own making, not noise: a pattern in the picture that moves with the camera must
+  // not be taken for ground that does not.
+  double normal_error_rad = 0.0;
   double outlier_sigma = 5.0;         // residuals well beyond it have no weight
   // A direction counts as observed when the clouds hold this many times the information about it
   // that the noise of the normals alone would feign.
@@ -45,6 +48,8 @@ struct RegistrationConfig {
                "between the normals of partners");
     visit.real("surface_error", self.surface_error, {0.0, 1.0},
                "what a surfel misses of the surface, in cells");
+    visit.real("normal_error_rad", self.normal_error_rad, {0.0, 1.0},
+               "systematic, of a normal: less is no structure");
     visit.real("outlier_sigma", self.outlier_sigma, {1.0, 100.0},
                "residuals well beyond it have no weight");
     visit.real("min_information_ratio", self.min_information_ratio, {1.0, 1000.0},

@@ -89,6 +89,12 @@ Status CostMap::configure(const CostConfig& config) {
   return Status::kOk;
 }
 
+void CostMap::touch() {
+  bend_m_.fill(0);
+  sum_.fill(0);
+  squares_.fill(0);
+}
+
 Status CostMap::start() {
   if (!configured_) return Status::kUnavailable;
   view_ = {};

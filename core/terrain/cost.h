@@ -70,6 +70,9 @@ class CostMap {
   // kInvalid: see validate(); nothing changed.
   Status configure(const CostConfig& config);
 
+  // Writes every page, so that no later call meets one for the first time.
+  void touch();
+
   // Several views of one terrain, draws of its unseen parts for instance, are given one after the
   // other; the map holds mean and spread of their costs. kUnavailable: not configured.
   Status start();

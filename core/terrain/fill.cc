@@ -33,6 +33,34 @@ HeightView view_of(const FilledTerrain& filled) {
           filled.columns,         filled.cell_m};
 }
 
+void keep_measured(const TerrainGrid& grid, FilledTerrain& out) {
+  out.columns = grid.columns;
+  out.rows = grid.rows;
+  out.cell_m = grid.cell_m;
+  out.first = grid.first;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(grid.size()); ++i) {
+    const bool measured = grid.knowledge[i] == Knowledge::kMeasured;
+    out.state[i] = measured ? FilledState::kMeasured : FilledState::kUnknown;
+    out.height_m[i] = measured ? grid.value_m[i] : 0.0f;
+    out.spread_m[i] = 0;
+  }
+}
+
+void TerrainFiller::touch() {
+  grid_.value_m.fill(0);
+  grid_.knowledge.fill(Knowledge::kUnknown);
+  order_.fill(0);
+  in_rows_.fill(0);
+  learned_m_.fill(0);
+  known_.fill(0);
+  ceiling_m_.fill(0);
+  for (auto& heights : height_m_) heights.fill(0);
+  for (auto& heights : drawn_m_) heights.fill(0);
+  filled_.state.fill(FilledState::kUnknown);
+  filled_.height_m.fill(0);
+  filled_.spread_m.fill(0);
+}
+
 Status TerrainFiller::configure(const FillConfig& config) {
   const Status status = validate(config);
   if (!ok(status)) return status;

@@ -45,6 +45,8 @@ struct HeightView {
   double cell_m = 0;
 };
 HeightView view_of(const FilledTerrain& filled);
+// Measured cells as they are, all others unknown: nothing is filled.
+void keep_measured(const TerrainGrid& grid, FilledTerrain& out);
 
 struct FillCounts {
   std::int32_t measured = 0;
@@ -58,6 +60,9 @@ class TerrainFiller {
  public:
   // kInvalid: see validate(); nothing changed. Ends a fill under way.
   Status configure(const FillConfig& config);
+
+  // Writes every page, so that no later call meets one for the first time.
+  void touch();
 
   // Copies the grid; the library must stay as it is until the fill is done. view_rad: heading of
   // the sensor in the grid (0 along x): where the far rims are, and how the prior lies.

@@ -21,6 +21,9 @@ struct TerrainMap {
   std::array<float, kCells> cost{};      // 0 to 1, mean over the draws; without height: 0
   std::array<float, kCells> spread_m{};  // standard deviation of a filled height; measured: 0
 
+  // As before the first one, and every page written.
+  void clear();
+
   // Hash of everything above.
   std::uint64_t digest() const;
 

@@ -22,6 +22,7 @@ inline planning::FootstepConfig footstep_config() {
   c.min_inradius_m = 0.022;
   c.terrain_weight_m = 0.05;
   c.spread_weight = 1.0;
+  c.edge_reach_m = 0.02;
   c.edge_weight = 0.5;
   c.deviation_scale_m = 0.05;
   c.rise_weight = 0.2;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace surefoot::autonomy {
 namespace {
 
@@ -43,6 +45,23 @@ TEST(PoseHistory, RefusesWhatItDoesNotCover) {
   EXPECT_EQ(history.at(milliseconds(1999)).status(), Status::kOutOfRange);
   history.push(state_at(500));  // stamps never go back
   EXPECT_EQ(history.at(milliseconds(1998)).value().p_OB_m[0], 0.001 * 1998);
+}
+
+TEST(PoseHistory, MovesEveryPoseAboutThePivot) {
+  PoseHistory history;
+  for (int ms = 0; ms <= 100; ms += 2) history.push(state_at(ms));
+  OdometryShift shift;
+  shift.pivot_O_m = Vector3(0.1, 0.0, 0.3);
+  shift.shift_O_m = Vector3(0.01, 0.02, 0.03);
+  shift.yaw_rad = 0.5;
+  history.move(shift);
+  const PastPose last = history.at(milliseconds(100)).value();  // at the pivot
+  EXPECT_LT((last.p_OB_m - Vector3(0.11, 0.02, 0.33)).norm(), 1e-12);
+  EXPECT_NEAR(geometry::to_rotation_vector(geometry::to_matrix(last.q_OB))[2], 0.55, 1e-9);
+  const PastPose first = history.at(milliseconds(0)).value();  // 0.1 m behind it
+  EXPECT_LT(
+      (first.p_OB_m - Vector3(0.11 - 0.1 * std::cos(0.5), 0.02 - 0.1 * std::sin(0.5), 0.33)).norm(),
+      1e-9);
 }
 
 }  // namespace

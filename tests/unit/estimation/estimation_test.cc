@@ -126,6 +126,26 @@ TEST(Attitude, FeetThatStandLevelIt) {
 
 // A running trunk surges in step with its bouncing: the mean direction of the specific force is not
 // up although the mean force is. Feet that follow the true motion have nothing to correct.
+TEST(Attitude, LevelGroundTellsTheAccelerometersBias) {
+  AttitudeEstimator estimator;
+  estimator.reset(attitude_config(), robot::ImuSpecification{});
+  const Vector3 bias(0.05, -0.04, 0.02);
+  const Vector3 force = Vector3(0, 0, 9.81) + bias;
+  int i = start(estimator, force);
+  EXPECT_GT(std::acos(estimator.R_OB()(2, 2)), 0.005);  // it takes the bias for a tilt
+  for (int end = i + 3000; i < end; ++i) {
+    ASSERT_EQ(estimator.update(sample_at(i, Vector3::Zero(), force), false, true), Status::kOk);
+    estimator.level(Vector3::UnitZ(), 0.004);
+  }
+  EXPECT_LT(std::acos(std::min(estimator.R_OB()(2, 2), 1.0)), 1e-4);
+  EXPECT_LT((estimator.accelerometer_bias_B_m_s2() - bias).norm(), 1e-3);
+  // From then on the measured "up" is up.
+  for (int end = i + 20000; i < end; ++i) {
+    ASSERT_EQ(estimator.update(sample_at(i, Vector3::Zero(), force), false), Status::kOk);
+  }
+  EXPECT_LT(std::acos(std::min(estimator.R_OB()(2, 2), 1.0)), 2e-4);
+}
+
 TEST(Attitude, ASurgeInStepWithABounceTiltsTheMeasuredUpButNotTheFeet) {
   const auto pitch_after = [](bool by_feet) {
     AttitudeEstimator estimator;

@@ -48,7 +48,7 @@ class FootstepOracle {
     const Triangle next = without(landed, kStepOrder[(turn + 1) % 4]);
     const double room_m = next.inradius_m();
     if (room_m < config_.min_inradius_m) return -1;
-    const double edge_m = std::max(0.0, highest_m(step.cell) - ground_m);
+    const double edge_m = this->edge_m(step.cell, ground_m);
     const double off_m = (step.position_O_m - nominal).head<2>().norm();
     const double shift_m =
         distance_m(without(feet, leg).drawn_in(shape_.margin_m), next.drawn_in(shape_.margin_m));
@@ -120,17 +120,17 @@ class FootstepOracle {
     return true;
   }
 
-  double highest_m(mapping::CellIndex i) const {
-    double highest_m = static_cast<double>(map_.ground.at(i).height_m);
+  double edge_m(mapping::CellIndex i, double height_m) const {
+    double edge_m = 0;
     for (int dy = -3; dy <= 3; ++dy) {
       for (int dx = -3; dx <= 3; ++dx) {
         const mapping::WindowCell* cell = map_.ground.find(i + mapping::CellIndex{dx, dy});
         const double away_m = std::hypot(dx, dy) * map_.ground.cell_size_m;
-        if (cell == nullptr || !cell->has_height() || away_m > model_.foot_radius_m) continue;
-        highest_m = std::max(highest_m, static_cast<double>(cell->height_m));
+        if (cell == nullptr || !cell->has_height() || away_m > config_.edge_reach_m) continue;
+        edge_m = std::max(edge_m, std::abs(static_cast<double>(cell->height_m) - height_m));
       }
     }
-    return highest_m;
+    return edge_m;
   }
 
   void descend(const Feet& feet, double cost) {
