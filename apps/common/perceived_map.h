@@ -56,9 +56,9 @@ ClassGrid classify_map(const mapping::ControlMap& map, const mapping::MappingCon
                        const mapping::TraversabilityLimits& limits, const Alignment& O_in_W,
                        const HeightGrid& raster);
 
-// From a place to the surface over the plane, walls between samples 1 mm apart included: at most the
-// difference in height. Ring by ring: the cost is
-// three samples a square millimetre of a square that reaches as far as the answer.
+// From a place to the surface over the plane, walls between samples 1 mm apart included: at most
+// the difference in height. Cost: three samples a square millimetre of a square that reaches as far
+// as the answer.
 double distance_to_surface_m(const TrueGround& ground, double x_m, double y_m, double z_m);
 
 // The map's own cells whose centres lie within `half_width` of the body's trace: error of the

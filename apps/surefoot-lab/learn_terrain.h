@@ -17,8 +17,8 @@ struct LearnTerrainOptions {
   int jobs = 1;
 };
 
-// Writes the file and prints the scales of the cost. Exit code: 2 for a wrong option or robot, 3 where
-// nothing could be made or written.
+// Writes the file and prints the scales of the cost. Exit code: 2 for a wrong option or robot, 3
+// where nothing could be made or written.
 int learn_terrain(const LearnTerrainOptions& options);
 
 }  // namespace surefoot::apps

@@ -63,8 +63,8 @@ void FootstepCells::rate(FootstepCell& cell) const {
                 config_.edge_weight * edge_m(cell.index, cell.height_m);
 }
 
-// The most that the ground around stands up over a height or falls off below it, over the cells with
-// height whose centres are within reach.
+// The most that the ground around stands up over a height or falls off below it, over the cells
+// with height whose centres are within reach.
 double FootstepCells::edge_m(mapping::CellIndex index, double height_m) const {
   const mapping::MapWindow& ground = map_->ground;
   const double reach_cells = config_.edge_reach_m / ground.cell_size_m;

@@ -26,7 +26,7 @@ struct RegistrationConfig {
   // Of the sensor's own making, not noise: a pattern in the picture that moves with the camera must
   // not be taken for ground that does not.
   double normal_error_rad = 0.0;
-  double outlier_sigma = 5.0;         // residuals well beyond it have no weight
+  double outlier_sigma = 5.0;  // residuals well beyond it have no weight
   // A direction counts as observed when the clouds hold this many times the information about it
   // that the noise of the normals alone would feign.
   double min_information_ratio = 1.3;

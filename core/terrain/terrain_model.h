@@ -1,6 +1,6 @@
 // What the robot takes along about ground it has not seen: a piece of known terrain to draw patches
-// from and the learned prior. Made by `surefoot-lab learn terrain`, kept as a file of config/terrain,
-// part of every record.
+// from and the learned prior. Made by `surefoot-lab learn terrain`, kept as a file of
+// config/terrain, part of every record.
 #pragma once
 
 #include <array>
