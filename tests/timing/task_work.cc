@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::array kTables{kControlCases,   kModuleCases,  kMpcCases,          kDynamicsCases,
                              kJumpCases,      kMappingCases, kRegistrationCases, kObstacleCases,
-                             kExecutiveCases, kStereoCases,  kPlanningCases};
+                             kExecutiveCases, kStereoCases,  kPlanningCases,     kGroundCases};
 
 int list() {
   for (const WorkEntry* table : kTables) {

@@ -41,5 +41,6 @@ extern const WorkEntry kJumpCases[];
 extern const WorkEntry kObstacleCases[];
 extern const WorkEntry kStereoCases[];
 extern const WorkEntry kPlanningCases[];
+extern const WorkEntry kGroundCases[];
 
 }  // namespace surefoot::timing

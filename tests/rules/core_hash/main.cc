@@ -24,6 +24,7 @@ constexpr Workload kWorkloads[] = {
     {"stereo", surefoot::tests::hash_stereo},
     {"mapping", surefoot::tests::hash_mapping},
     {"terrain", surefoot::tests::hash_terrain},
+    {"terrain_task", surefoot::tests::hash_terrain_task},
     {"planning", surefoot::tests::hash_planning},
     {"swing", surefoot::tests::hash_swing},
     {"convex_mpc", surefoot::tests::hash_convex_mpc},

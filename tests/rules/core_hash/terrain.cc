@@ -1,11 +1,12 @@
-// Workload of core/terrain: rough ground with shadows, completed in slices, and its cost.
+// Workloads of core/terrain: rough ground with shadows, completed in slices, and its cost; and of
+// the terrain task, which does this to windows of the map.
 #include <bit>
 #include <memory>
 
 #include "core/terrain/cost.h"
 #include "core/terrain/fill.h"
 #include "tests/rules/core_hash/workloads.h"
-#include "tests/support/terrain_parts.h"
+#include "tests/support/terrain_task_parts.h"
 
 namespace surefoot::tests {
 namespace {
@@ -60,6 +61,24 @@ void hash_terrain(Fnv64& hash) {
       mix(hash, cost->cost(i));
       mix(hash, cost->spread(i));
     }
+  }
+}
+
+void hash_terrain_task(Fnv64& hash) {
+  const auto task = std::make_unique<autonomy::TerrainTask>();
+  autonomy::TerrainConfig config = terrain_task_config();
+  config.synthesis.samples = 6;
+  config.synthesis.draws = 2;
+  hash.byte(static_cast<std::uint8_t>(task->reset(config, kTerrainCell_m)));
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    const auto window = terrain_window(seed);
+    const std::uint64_t digest = window->digest();
+    while (task->release(*window, digest, 0.3 * static_cast<double>(seed))) {
+      task->run();
+      task->publish();
+    }
+    hash.word(task->map_digest(), 8);
+    hash.word(task->counters().filled, 8);
   }
 }
 

@@ -34,6 +34,7 @@ void hash_registration(Fnv64& hash);
 void hash_stereo(Fnv64& hash);
 void hash_mapping(Fnv64& hash);
 void hash_terrain(Fnv64& hash);
+void hash_terrain_task(Fnv64& hash);
 void hash_planning(Fnv64& hash);
 void hash_swing(Fnv64& hash);
 void hash_convex_mpc(Fnv64& hash);

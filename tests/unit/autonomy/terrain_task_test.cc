@@ -5,60 +5,17 @@
 
 #include <algorithm>
 #include <memory>
-#include <vector>
 
-#include "tests/support/terrain_parts.h"
+#include "tests/support/terrain_task_parts.h"
 
 namespace surefoot::autonomy {
 namespace {
 
-constexpr double kCell_m = 0.01;
-constexpr std::int32_t kSide = mapping::kWindowSide;
+using tests::terrain_window;
 
-TerrainConfig config() {
-  TerrainConfig config;
-  config.present = true;
-  config.fill = FillUse::kOn;
-  config.fill_work = 5000;
-  config.cost_rows = 10;
-  config.synthesis = tests::some_fill();
-  config.synthesis.weight_deviation = 0.4;
-  config.cost.radius_cells = {1, 2, 4};
-  for (terrain::FeatureCost* feature : {&config.cost.slope, &config.cost.height_difference,
-                                        &config.cost.deviation, &config.cost.roughness}) {
-    feature->scale.fill(0.05);
-    feature->weight.fill(1.0);
-  }
-  terrain::TerrainModel& model = config.model;
-  model.cell_m = kCell_m;
-  const std::vector<float> heights = tests::rough_heights(77, 100, 40);
-  EXPECT_EQ(model.rows.resize(40), Status::kOk);
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    model.rows[i / 100].heights_m[i % 100] = static_cast<double>(heights[i]);
-  }
-  model.prior_constant = -0.01;
-  return config;
-}
+constexpr double kCell_m = tests::kTerrainCell_m;
 
-// A scene of the terrain tests as a window.
-std::unique_ptr<mapping::MapWindow> window(std::uint64_t seed) {
-  auto grid = std::make_unique<terrain::TerrainGrid>();
-  tests::make_scene(seed, kSide, kSide, kCell_m, *grid);
-  auto window = std::make_unique<mapping::MapWindow>();
-  window->cell_size_m = kCell_m;
-  window->first = grid->first;
-  window->frames = seed;
-  for (std::size_t i = 0; i < window->cells.size(); ++i) {
-    mapping::WindowCell& cell = window->cells[i];
-    cell.height_m = grid->value_m[i];
-    if (grid->knowledge[i] == terrain::Knowledge::kMeasured) {
-      cell.state = mapping::CellState::kMeasured;
-    } else if (grid->knowledge[i] == terrain::Knowledge::kBounded) {
-      cell.state = mapping::CellState::kBounded;
-    }
-  }
-  return window;
-}
+TerrainConfig config() { return tests::terrain_task_config(); }
 
 std::unique_ptr<TerrainTask> task_with(const TerrainConfig& config) {
   auto task = std::make_unique<TerrainTask>();
@@ -81,7 +38,7 @@ int finish(TerrainTask& task, const mapping::MapWindow& window) {
 
 TEST(TerrainTask, FillsUnderTheCeilingsAndLeavesTheRestAlone) {
   const auto task = task_with(config());
-  const auto seen = window(3);
+  const auto seen = terrain_window(3);
   finish(*task, *seen);
   ASSERT_EQ(task->counters().maps, 1u);
   std::uint64_t filled = 0;
@@ -118,7 +75,7 @@ TEST(TerrainTask, TheSlicesDoNotChangeTheResult) {
   large.cost_rows = 100;
   const auto in_slices = task_with(config());
   const auto at_once = task_with(large);
-  const auto seen = window(4);
+  const auto seen = terrain_window(4);
   const int slices = finish(*in_slices, *seen);
   EXPECT_LT(finish(*at_once, *seen), 10);
   EXPECT_GT(slices, 50);
@@ -129,7 +86,7 @@ TEST(TerrainTask, WithoutFillUnseenCellsAreLeftOut) {
   TerrainConfig off = config();
   off.fill = FillUse::kOff;
   const auto task = task_with(off);
-  const auto seen = window(5);
+  const auto seen = terrain_window(5);
   finish(*task, *seen);
   EXPECT_EQ(task->counters().filled, 0u);
   for (std::size_t i = 0; i < seen->cells.size(); ++i) {
@@ -139,9 +96,9 @@ TEST(TerrainTask, WithoutFillUnseenCellsAreLeftOut) {
 
 TEST(TerrainTask, TakesTheYoungestWindowAndNoneTwice) {
   const auto task = task_with(config());
-  const auto first = window(6);
-  const auto second = window(7);
-  const auto third = window(8);
+  const auto first = terrain_window(6);
+  const auto second = terrain_window(7);
+  const auto third = terrain_window(8);
   ASSERT_TRUE(task->release(*first, first->digest(), 0));
   task->run();
   task->publish();
@@ -158,7 +115,7 @@ TEST(TerrainTask, TakesTheYoungestWindowAndNoneTwice) {
 
 TEST(TerrainTask, AWindowWithNothingMeasuredIsRefusedAndTheOldMapStays) {
   const auto task = task_with(config());
-  const auto seen = window(3);
+  const auto seen = terrain_window(3);
   finish(*task, *seen);
   const std::uint64_t digest = task->map_digest();
   mapping::MapWindow empty = *seen;
@@ -171,17 +128,17 @@ TEST(TerrainTask, AWindowWithNothingMeasuredIsRefusedAndTheOldMapStays) {
 }
 
 TEST(TerrainTask, RefusesAModelThatDoesNotFit) {
-  TerrainTask task;
-  EXPECT_EQ(task.reset(TerrainConfig{}, kCell_m), Status::kOk);  // not present: nothing to do
-  EXPECT_FALSE(task.enabled());
-  EXPECT_EQ(task.reset(config(), 0.015), Status::kInvalid);
+  const auto task = std::make_unique<TerrainTask>();
+  EXPECT_EQ(task->reset(TerrainConfig{}, kCell_m), Status::kOk);  // not present: nothing to do
+  EXPECT_FALSE(task->enabled());
+  EXPECT_EQ(task->reset(config(), 0.015), Status::kInvalid);
   TerrainConfig thin = config();
   EXPECT_EQ(thin.model.rows.resize(2), Status::kOk);
-  EXPECT_EQ(task.reset(thin, kCell_m), Status::kInvalid);
+  EXPECT_EQ(task->reset(thin, kCell_m), Status::kInvalid);
   TerrainConfig empty = config();
   empty.model.rows.clear();
-  EXPECT_EQ(task.reset(empty, kCell_m), Status::kInvalid);
-  EXPECT_FALSE(task.enabled());
+  EXPECT_EQ(task->reset(empty, kCell_m), Status::kInvalid);
+  EXPECT_FALSE(task->enabled());
 }
 
 }  // namespace
