@@ -13,9 +13,20 @@ set -euo pipefail
 export LC_ALL=C
 
 readonly TASKS='surefoot::autonomy::Autonomy::run_control(
+surefoot::autonomy::Autonomy::begin_mpc(
+surefoot::autonomy::Autonomy::begin_stereo(
+surefoot::autonomy::Autonomy::begin_localisation(
 surefoot::autonomy::Autonomy::begin_mapping(
+surefoot::autonomy::Autonomy::begin_terrain(
+surefoot::control::ConvexMpc::solve(
+surefoot::autonomy::StereoTask::run(
+surefoot::autonomy::StereoTask::publish(
+surefoot::autonomy::LocalisationTask::run(
+surefoot::autonomy::Autonomy::publish_localisation(
 surefoot::autonomy::MapTask::run(
-surefoot::autonomy::MapTask::publish('
+surefoot::autonomy::MapTask::publish(
+surefoot::autonomy::TerrainTask::run(
+surefoot::autonomy::TerrainTask::publish('
 readonly OTHERS='surefoot::runtime::Executive::run_tick(
 surefoot::autonomy::Autonomy::reset(
 surefoot::runtime::Executive::start('
