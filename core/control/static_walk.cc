@@ -60,6 +60,8 @@ void StaticWalk::start(const estimation::RobotState& state) {
     centre += feet_O_m_[leg].head<2>() / static_cast<double>(robot::kLegs);
     feet_m += feet_O_m_[leg][2] / static_cast<double>(robot::kLegs);
   }
+  taken_O_m_ = feet_O_m_;
+  lost_s_.fill(0);
   yaw_rad_ = state.yaw_rad;
   to_ = {centre, feet_m - model_.foot_radius_m + config_.body.height_m,
          Vector3(0.0, 0.0, state.yaw_rad)};

@@ -140,6 +140,117 @@ TEST(StaticWalk, AfterASlipAFootThatFindsNoGroundStillGoesBack) {
   EXPECT_LT((world.state.feet[robot::kHindRight].p_O_m - home).head<2>().norm(), 0.02);
 }
 
+// What legs are told and where their feet are agree within `slack_m`.
+TEST(StaticWalk, AStandingFootThatSlidesOffAnEdgeIsFollowed) {
+  const Vector3 slide(0.008, 0.0, -0.006);
+  for (const double slack_m : {0.003, 0.5}) {
+    ControlConfig config = tests::static_walk_config();
+    config.static_walk.slack_m = slack_m;
+    StaticWalkWorld world(config);
+    for (int i = 0; i < 500; ++i) world.tick({}, false);
+    const Vector3 told = world.state.feet[robot::kFrontLeft].p_B_m;
+    world.state.feet[robot::kFrontLeft].p_O_m += slide;
+    for (int i = 0; i < 10; ++i) world.tick({}, false);
+    const Vector3 followed = world.state.feet[robot::kFrontLeft].p_B_m - told;
+    const double wanted_m = slack_m < slide.norm() ? slide.norm() - slack_m : 0.0;
+    EXPECT_NEAR(followed.norm(), wanted_m, 1e-4);
+    EXPECT_NEAR(followed.dot(slide), wanted_m * slide.norm(), 1e-6);
+    EXPECT_EQ(world.walk->counters().slipped, 0U);  // no foot was in the air
+  }
+}
+
+TEST(StaticWalk, AStandingFootWithoutGroundGoesDownUntilItFeelsSome) {
+  StaticWalkWorld world;
+  for (int i = 0; i < 500; ++i) world.tick({}, false);
+  estimation::FootState& foot = world.state.feet[robot::kFrontLeft];
+  const double told_m = foot.p_B_m[2];
+  foot.in_contact = false;
+  for (int i = 0; i < 10; ++i) world.tick({}, false);
+  EXPECT_NEAR(foot.p_B_m[2], told_m, 1e-6);  // a touch that is missed for 20 ms is nothing
+  for (int i = 0; i < 105; ++i) world.tick({}, false);
+  EXPECT_NEAR(foot.p_B_m[2], told_m - 0.02, 0.001);
+  for (int i = 0; i < 1000; ++i) world.tick({}, false);
+  EXPECT_NEAR(foot.p_B_m[2], told_m - 0.04, 1e-4);  // search_depth_m
+  EXPECT_TRUE(world.walk->at_rest());
+}
+
+// Legs would lift off over a trunk that still runs towards the side that they leave.
+TEST(StaticWalk, NoFootLiftsBeforeTheCapturePointIsOverTheOthers) {
+  ControlConfig config = tests::static_walk_config();
+  config.static_walk.lift_margin_m = 0.008;
+  config.static_walk.patience_s = 0.5;
+  StaticWalkWorld world(config);
+  const auto run_sideways = [&world](double speed_m_s, int ticks) {
+    for (int i = 0; i < ticks && world.in_the_air() == 0; ++i) {
+      world.state.v_OB_m_s = Vector3(0.0, speed_m_s, 0.0);
+      world.tick(forward(0.06), true);
+    }
+  };
+  run_sideways(-0.5, 3000);  // the leg whose turn it is is a right one
+  EXPECT_EQ(world.in_the_air(), 0);
+  EXPECT_EQ(world.walk->counters().steps, 0U);
+  EXPECT_GE(world.walk->counters().waited, 3U);
+  run_sideways(0.0, 1000);
+  EXPECT_EQ(world.walk->legs()[robot::kHindRight].mode, LegMode::kSwing);
+}
+
+TEST(StaticWalk, NoFootLiftsWhileAnotherFeelsNoGround) {
+  ControlConfig config = tests::static_walk_config();
+  config.static_walk.patience_s = 0.5;
+  StaticWalkWorld world(config);
+  world.state.feet[robot::kFrontRight].in_contact = false;
+  for (int i = 0; i < 3000; ++i) world.tick(forward(0.06), true);
+  EXPECT_EQ(world.walk->counters().steps, 0U);
+  EXPECT_EQ(world.in_the_air(), 0);
+  world.state.feet[robot::kFrontRight].in_contact = true;
+  for (int i = 0; i < 1000 && world.in_the_air() == 0; ++i) world.tick(forward(0.06), true);
+  EXPECT_EQ(world.in_the_air(), 1);
+}
+
+// The shift keeps to its mean speed with all of its way: sideways, up, and of the hips about the
+// trunk's middle.
+TEST(StaticWalk, TheShiftLastsLongerWhenTheTrunkMustRiseOrTurn) {
+  const auto ticks_of_first_shift = [](double landing_m) {
+    StaticWalkWorld world;
+    for (int i = 0; i < 500; ++i) world.tick({}, false);
+    const auto map = tests::terrain_of(
+        [landing_m](mapping::CellIndex) { return tests::GroundCell{.height_m = landing_m}; });
+    int ticks = 0;
+    while (world.in_the_air() == 0 && ticks < 1000) {
+      world.tick(forward(0.06), true, &map->ground);
+      ++ticks;
+    }
+    return ticks;
+  };
+  const int level = ticks_of_first_shift(0.0);
+  const int low = ticks_of_first_shift(0.02);
+  const int high = ticks_of_first_shift(0.04);
+  EXPECT_GT(level, 50);
+  EXPECT_GE(low, level + 3);
+  EXPECT_GE(high, low + 6);
+}
+
+TEST(StaticWalk, AfterAMishapTheTrunkShiftsSlowly) {
+  const auto ticks_after_slip = [](double caution, int cautious_steps) {
+    ControlConfig config = tests::static_walk_config();
+    config.static_walk.caution = caution;
+    config.static_walk.cautious_steps = cautious_steps;
+    StaticWalkWorld world(config);
+    for (int i = 0; i < 1000 && world.in_the_air() == 0; ++i) world.tick(forward(0.06), true);
+    world.state.feet[robot::kFrontLeft].p_O_m += Vector3(0.013, 0.0, 0.0);
+    const std::uint64_t steps = world.walk->counters().steps + 5;
+    int ticks = 0;
+    for (; ticks < 20000 && world.walk->counters().steps < steps; ++ticks) {
+      world.tick(forward(0.06), true);
+    }
+    EXPECT_EQ(world.walk->counters().slipped, 1U);
+    return ticks;
+  };
+  const int bold = ticks_after_slip(1.0, 4);
+  EXPECT_EQ(ticks_after_slip(0.5, 0), bold);
+  EXPECT_GT(ticks_after_slip(0.5, 4), bold + 100);
+}
+
 TEST(StaticWalk, StandsAndCountsWhereNoFootholdIs) {
   StaticWalkWorld world;
   auto window = std::make_unique<mapping::MapWindow>();
