@@ -181,6 +181,16 @@ bool is_missing_group(const ConfigIssue& issue) {
   return issue.key.find('.') == std::string::npos && issue.message.rfind("missing", 0) == 0;
 }
 
+// What a file would have held that could not be read is not missing as well.
+void drop_what_follows(const ConfigIssues& before, ConfigIssues& read) {
+  std::erase_if(read, [&](const ConfigIssue& issue) {
+    if (issue.message.rfind("missing", 0) != 0) return false;
+    return std::any_of(before.begin(), before.end(), [&](const ConfigIssue& other) {
+      return !other.key.empty() && issue.key.rfind(other.key + ".", 0) == 0;
+    });
+  });
+}
+
 // Issues of groups whose file was not asked for, or could not be found, say nothing new.
 ConfigIssues without_absent_groups(ConfigIssues read, const RunRequest& request,
                                    const ConfigIssues& before) {
@@ -266,6 +276,7 @@ Config load_config_parts(const RunRequest& request, const fs::path& folder, Conf
   }
   take_goal_from_world(config);
   read = without_absent_groups(std::move(read), request, issues);
+  drop_what_follows(issues, read);
   issues.insert(issues.end(), read.begin(), read.end());
   return config;
 }
