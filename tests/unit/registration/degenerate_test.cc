@@ -107,6 +107,42 @@ TEST_P(Degenerate, CornerTellsAll) {
   }
 }
 
+// A flat floor, seen twice by a sensor whose pictures have a ripple of half a millimetre. It goes
+// where the sensor goes: taken for structure, it says that the sensor has not moved.
+TEST(Ripple, OfTheSensorIsNoStructureWhenNormalsAreGivenAnError) {
+  constexpr double kRipple_m = 0.0005;
+  constexpr double kLength_m = 0.08;
+  const auto picture = [](Random& random) {
+    std::vector<Vector3> points(kPoints);
+    for (Vector3& p : points) {
+      p = floor_point(random) * 0.5;
+      p.z() += kRipple_m * math::sin(2 * math::kPi / kLength_m * p.x()) +
+               kRipple_m * math::sin(2 * math::kPi / kLength_m * p.y());
+    }
+    return points;
+  };
+  const Vector3 way_m(0.006, -0.004, 0.0);
+  for (const double error_rad : {0.0, 0.04}) {
+    Random random(1, 22);
+    tests::Workbench bench;
+    RegistrationConfig config;
+    config.cell_m = 0.015;
+    config.normal_error_rad = error_rad;
+    ASSERT_TRUE(bench.configure(config));
+    bench.fill(*bench.target, picture(random));
+    bench.fill(*bench.source, picture(random));
+    ASSERT_EQ(bench.align({{{}, {way_m}}, 0.01, 0.01}), Status::kOk);
+    const Vector3 off_m = bench.result.X_TS.origin.m - way_m;
+    if (error_rad > 0) {
+      EXPECT_EQ(bench.result.observed_directions, 3);
+      EXPECT_LT(off_m.norm(), 2e-4);
+    } else {
+      EXPECT_GT(bench.result.observed_directions, 3);
+      EXPECT_GT(off_m.norm(), 0.004);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Noise, Degenerate, ::testing::Values(0.0, 0.001, 0.003, 0.006));
 
 }  // namespace

@@ -112,7 +112,7 @@ TEST_F(RegistrationTest, CloudsOfAnotherCellSizeAreInvalid) {
 }
 
 TEST_F(RegistrationTest, BadConfigurationsAreInvalid) {
-  std::vector<RegistrationConfig> bad(12);
+  std::vector<RegistrationConfig> bad(13);
   bad[0].cell_m = 0;
   bad[1].cell_m = std::numeric_limits<double>::quiet_NaN();
   bad[2].max_iterations = {0, 0, 0, 0};
@@ -125,6 +125,7 @@ TEST_F(RegistrationTest, BadConfigurationsAreInvalid) {
   bad[9].outlier_sigma = 0;
   bad[10].min_information_ratio = 0.5;
   bad[11].gate_sigma = 0;
+  bad[12].normal_error_rad = -0.1;
   for (const RegistrationConfig& config : bad) {
     EXPECT_EQ(bench_.aligner->configure(config), Status::kInvalid);
   }
