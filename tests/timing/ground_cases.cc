@@ -1,5 +1,8 @@
 // The tasks between a picture of depth and the footsteps, with LittleDog's settings: the picture is
 // registered with the scans before it; a window is completed and rated.
+#include <cmath>
+#include <memory>
+
 #include "core/autonomy/localisation_task.h"
 #include "core/autonomy/terrain_task.h"
 #include "core/base/assert.h"
@@ -93,7 +96,7 @@ class Localisation final : public WorkCase {
       z_m = (height_m(eye_m[0] + ray[0] * z_m, eye_m[1] + ray[1] * z_m) - eye_m[2]) / ray[2];
     }
     const double seen_m = 1.0 / (1.0 / z_m + 0.01 * noise_.normal());
-    return seen_m > 0.05 && seen_m < 6.0 ? static_cast<std::uint16_t>(seen_m / kUnit_m + 0.5)
+    return seen_m > 0.05 && seen_m < 6.0 ? static_cast<std::uint16_t>(std::lround(seen_m / kUnit_m))
                                          : std::uint16_t{0};
   }
 

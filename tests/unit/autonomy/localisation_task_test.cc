@@ -80,7 +80,7 @@ std::unique_ptr<hal::DepthFrame> picture(const tests::RockyBoard& board, const P
           z += over_ground_m(z) > 0 ? step : -step;
         }
         const double seen = 1.0 / (1.0 / z + 0.01 * noise.normal());
-        frame->depth[v * kWidth_px + u] = static_cast<std::uint16_t>(seen / 0.0001 + 0.5);
+        frame->depth[v * kWidth_px + u] = static_cast<std::uint16_t>(std::lround(seen / 0.0001));
         break;
       }
     }

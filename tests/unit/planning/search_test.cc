@@ -49,7 +49,7 @@ std::unique_ptr<terrain::TerrainMap> stones(std::uint64_t seed, double share) {
     cell.spread_m = random.uniform() < 0.3 ? random.uniform(0.0, 0.02) : 0.0;
   }
   return tests::terrain_of([&](mapping::CellIndex i) {
-    return cells[static_cast<std::size_t>(100 * (i.iy + 50) + i.ix + 40)];
+    return cells[100 * static_cast<std::size_t>(i.iy + 50) + static_cast<std::size_t>(i.ix + 40)];
   });
 }
 

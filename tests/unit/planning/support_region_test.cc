@@ -57,8 +57,9 @@ TEST(SupportRegion, NearestPointBeatsEveryPointOfADenseGrid) {
     double best = std::numeric_limits<double>::infinity();
     constexpr int kSide = 161;
     for (int k = 0; k < kSide * kSide; ++k) {
-      const Vector2 p(-0.2 + 0.4 * (k % kSide) / (kSide - 1),
-                      -0.2 + 0.4 * (k / kSide) / (kSide - 1));
+      const int column = k % kSide;
+      const int row = k / kSide;
+      const Vector2 p(-0.2 + 0.4 * column / (kSide - 1), -0.2 + 0.4 * row / (kSide - 1));
       double depth = std::numeric_limits<double>::infinity();
       for (const Triangle& t : triangles) depth = std::min(depth, depth_m(t, p));
       if (depth >= margin) best = std::min(best, (p - wanted).norm());
