@@ -11,9 +11,9 @@ constexpr double kMaxYaw_rad = 1e6;  // of math::sin_cos
 constexpr double kHalfDiagonal = 0.7072;
 constexpr double kLowering_m = 0.006;  // as the static walk does it
 constexpr int kMaxLowerings = 33;
-// Of one state. Where the nearest and cheapest places are all out of reach, the rest is taken for
-// out of reach, too: this test is the dearest, and it bounds the whole search.
-constexpr int kMaxOutOfReach = 24;
+// In one plan. Where so many places were out of reach, a state has none beyond the first such: this
+// test is the dearest, and this bounds the whole search. Not the first step's.
+constexpr int kMaxOutOfReach = 600;
 
 bool in_domain(const FootstepProblem& problem) {
   bool good = problem.turn < robot::kLegs && math::is_finite(problem.map_offset_m) &&
@@ -39,7 +39,6 @@ struct FootstepPlanner::Expansion {
   Vector3 nominal_O_m;
   mapping::CellIndex middle;
   Triangle standing;  // while this leg is in the air, drawn in by the margin
-  int out_of_reach = 0;
 };
 
 void FootstepPlanner::reset(const FootstepConfig& config, const robot::RobotModel& model,
@@ -90,6 +89,7 @@ Status FootstepPlanner::plan(const FootstepProblem& problem, const terrain::Terr
 
 void FootstepPlanner::search(const FootstepProblem& problem) {
   best_ = Place{};
+  out_of_reach_ = 0;
   for (Beam& beam : beams_) beam.ranking.clear();
   beams_[0].nodes[0] = Node{problem.feet_O_m, 0.0, 0, {}};
   static_cast<void>(beams_[0].ranking.push_back(0));
@@ -110,37 +110,38 @@ bool FootstepPlanner::expand(const FootstepProblem& problem, std::size_t depth,
   const std::size_t turn = (problem.turn + depth) % robot::kLegs;
   const std::size_t leg = step_leg(turn);
   const Vector3 nominal = nominal_place_O_m(from.feet_O_m, hips_O_m_, leg, problem.stride_O_m);
-  Expansion expansion{problem,
-                      from,
-                      depth,
-                      parent,
-                      turn,
-                      leg,
-                      nominal,
-                      mapping::cell_index(nominal[0], nominal[1], cell_size_m_),
-                      standing_triangle(from.feet_O_m, turn).drawn_in(shape_.margin_m)};
+  const Expansion expansion{problem,
+                            from,
+                            depth,
+                            parent,
+                            turn,
+                            leg,
+                            nominal,
+                            mapping::cell_index(nominal[0], nominal[1], cell_size_m_),
+                            standing_triangle(from.feet_O_m, turn).drawn_in(shape_.margin_m)};
   bool continues = false;
   for (const Offset& offset : offsets_) {
     // No cell from here on costs less than its deviation.
     if (!wanted(depth + 1, from.cost + deviation_cost_m(offset.least_m * cell_size_m_))) {
       return true;
     }
+    const int before = out_of_reach_;
     if (offer(expansion, offset)) continues = true;
-    if (expansion.out_of_reach >= kMaxOutOfReach) break;
+    if (depth > 0 && out_of_reach_ > before && out_of_reach_ > kMaxOutOfReach) break;
   }
   return continues;
 }
 
 // false: not within the limits. One that is too dear for the beam is not tested to the end: it
 // counts as within, so that its state is no dead end.
-bool FootstepPlanner::offer(Expansion& expansion, const Offset& offset) {
+bool FootstepPlanner::offer(const Expansion& expansion, const Offset& offset) {
   Footstep step;
   if (!rate(expansion, offset, step)) return false;
   if (!wanted(expansion.depth + 1, expansion.from.cost + step.cost)) return true;
   if (!add_balance(expansion, step)) return false;
   if (!wanted(expansion.depth + 1, expansion.from.cost + step.cost)) return true;
   if (!reaches(expansion, step)) {
-    ++expansion.out_of_reach;
+    ++out_of_reach_;
     return false;
   }
   keep(expansion, step);

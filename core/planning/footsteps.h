@@ -93,7 +93,7 @@ class FootstepPlanner {
   void list_offsets();
   void search(const FootstepProblem& problem);
   bool expand(const FootstepProblem& problem, std::size_t depth, std::size_t parent);
-  bool offer(Expansion& expansion, const Offset& offset);
+  bool offer(const Expansion& expansion, const Offset& offset);
   bool rate(const Expansion& expansion, const Offset& offset, Footstep& step);
   bool add_balance(const Expansion& expansion, Footstep& step) const;
   bool reaches(const Expansion& expansion, const Footstep& step) const;
@@ -112,6 +112,7 @@ class FootstepPlanner {
   Hips hips_O_m_{};
   double cell_size_m_ = 0;
   Place best_;
+  int out_of_reach_ = 0;  // candidates of this plan
 };
 
 }  // namespace surefoot::planning

@@ -46,7 +46,7 @@ class WorstGround final : public Footsteps {
     planning::FootstepConfig config = tests::footstep_config();
     config.deviation_scale_m = 1.0;
     config.terrain_weight_m = 1.0;
-    config.reach_margin_m = 0.06;
+    config.reach_margin_m = 0.0475;
     reset(config);
     problem_.feet_O_m = tests::standing_feet(model_);
     problem_.stride_O_m = Vector2(0.06, 0.01);

@@ -17,6 +17,7 @@ using tests::rough_problem;
 using tests::rough_terrain;
 
 constexpr double kCell_m = 0.01;
+static_assert(sizeof(FootstepPlanner) < 68'000);
 
 // A robot whose feet are where the first step of every plan puts them.
 struct Walker {
@@ -195,6 +196,26 @@ TEST(Footsteps, ReckonWithALoweredTrunk) {
   Walker lowered(config);
   lowered.problem.stride_O_m = walker.problem.stride_O_m;
   EXPECT_TRUE(lowered.step(*map));
+}
+
+// The nominal place lies so far ahead that the nearest 24 candidates and more are out of reach: a
+// first step is found all the same.
+TEST(Footsteps, SearchTheWholeSquareForTheFirstStep) {
+  const auto map = tests::flat_terrain();
+  FootstepConfig config = tests::footstep_config();
+  config.steps = 1;
+  config.min_inradius_m = 0.005;
+  config.max_lowering_m = 0.0;
+  const auto reaches = [&](double length_m, std::int32_t radius_cells) {
+    config.radius_cells = radius_cells;
+    Walker walker(config);
+    walker.problem.stride_O_m = Vector2(length_m, 0.0);
+    return walker.step(*map);
+  };
+  double length_m = 0.05;
+  while (length_m < 0.6 && reaches(length_m, 3)) length_m += 0.005;
+  ASSERT_LT(length_m, 0.6);
+  EXPECT_TRUE(reaches(length_m, 6));
 }
 
 // The ground ends ahead: what there is of a plan counts, with a penalty for each missing step.

@@ -170,9 +170,8 @@ TEST(FootstepSearch, LookingAheadGetsStuckLessOften) {
   for (const Walked& walked : {near, far}) {
     std::printf("stuck %d of 200, %.5f m per step\n", walked.stuck, walked.cost / walked.steps);
   }
-  EXPECT_GE(near.stuck, far.stuck + 4);
-  EXPECT_LE(far.stuck, 2);
-  EXPECT_LT(far.cost / far.steps, near.cost / near.steps);
+  EXPECT_LT(far.stuck, near.stuck);
+  EXPECT_LT(far.cost / far.steps, 0.99 * near.cost / near.steps);
 }
 
 TEST(FootstepSearch, CountsWhatItsStepsCost) {
