@@ -191,14 +191,11 @@ void Contacts::collide_ground(std::size_t shape) {
   const double x1 = bounds[1] + kMargin_m;
   const double y0 = bounds[2] - kMargin_m;
   const double y1 = bounds[3] + kMargin_m;
-  const double x = 0.5 * (x0 + x1);
-  const double y = 0.5 * (y0 + y1);
   if (bounds[4] > index_.max_height_m(x0, y0, x1, y1)) return;
-  if (grid_.contains(x, y)) {
-    collide_grid(shape);
-  } else if (bounds[4] <= 0) {
-    collide_pair(shape, plane_);
-  }
+  // A leg may lie across the grid's border.
+  if (grid_.overlaps(x0, y0, x1, y1)) collide_grid(shape);
+  const bool inside = grid_.contains(x0, y0) && grid_.contains(x1, y1);
+  if (!inside && bounds[4] <= 0) collide_pair(shape, plane_);
   if (boxes_.empty()) return;
   std::array<std::uint32_t, TerrainIndex::kMaxCandidates> near;
   const std::size_t count = index_.boxes_near(x0, y0, x1, y1, near);

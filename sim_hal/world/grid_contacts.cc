@@ -54,7 +54,36 @@ void touch(const Vector3& centre, double radius, const Vector3& a, const Vector3
   found.add({point, out / distance, radius - distance});
 }
 
-// The centre itself is under the surface: the face above it pushes.
+// Where the grid ends the ground falls off to height 0: a wall along each of its four sides.
+struct Side {
+  Vector3 normal;   // outwards
+  double inside_m;  // how far the centre is inside of the wall
+};
+std::array<Side, 4> sides(const HeightGrid& grid, const Vector3& centre) {
+  return {{{Vector3(-1, 0, 0), centre.x() - grid.x0_m},
+           {Vector3(1, 0, 0), grid.end_x_m() - centre.x()},
+           {Vector3(0, -1, 0), centre.y() - grid.y0_m},
+           {Vector3(0, 1, 0), grid.end_y_m() - centre.y()}}};
+}
+
+// The centre is outside of the grid: the wall beside it, where that is as high.
+void touch_sides(const HeightGrid& grid, const Vector3& centre, double radius, Candidates& found) {
+  for (const Side& side : sides(grid, centre)) {
+    if (side.inside_m > 0 || side.inside_m <= -radius) continue;
+    const Vector3 foot = centre + side.inside_m * side.normal;
+    const double x = std::clamp(foot.x(), grid.x0_m, grid.end_x_m());
+    const double y = std::clamp(foot.y(), grid.y0_m, grid.end_y_m());
+    const Vector3 point(x, y, std::clamp(centre.z(), 0.0, std::max(0.0, grid.height_m(x, y))));
+    const Vector3 out = centre - point;
+    const double distance = out.norm();
+    if (distance >= radius) continue;
+    const Vector3 normal = distance > 1e-9 ? Vector3(out / distance) : side.normal;
+    found.add({point, normal, radius - distance});
+  }
+}
+
+// The centre itself is under the surface: the nearer of the face above it and a wall beside it
+// pushes.
 GridContact buried(const HeightGrid& grid, const Vector3& centre, double radius, double ground) {
   const double e = 0.25 * grid.cell_m;
   const double x1 = std::min(centre.x() + e, grid.end_x_m());
@@ -63,7 +92,12 @@ GridContact buried(const HeightGrid& grid, const Vector3& centre, double radius,
   const double slope_y = (grid.height_m(centre.x(), y1) - grid.height_m(centre.x(), y1 - e)) / e;
   const Vector3 normal = Vector3(-slope_x, -slope_y, 1).normalized();
   const double below = (ground - centre.z()) * normal.z();
-  return {centre + below * normal, normal, radius + below};
+  GridContact nearest{centre + below * normal, normal, radius + below};
+  for (const Side& side : sides(grid, centre)) {
+    if (radius + side.inside_m >= nearest.depth_m) continue;
+    nearest = {centre + side.inside_m * side.normal, side.normal, radius + side.inside_m};
+  }
+  return nearest;
 }
 
 }  // namespace
@@ -98,6 +132,7 @@ std::size_t sphere_on_grid(const HeightGrid& grid, const Vector3& centre_m, doub
   const std::size_t j_end = end_cell(y + radius_m, grid.cell_m, grid.ny);
   const double lowest = centre_m.z() - radius_m;
   Candidates found;
+  touch_sides(grid, centre_m, radius_m, found);
   for (std::size_t j = first_cell(y - radius_m, grid.cell_m); j < j_end; ++j) {
     for (std::size_t i = first_cell(x - radius_m, grid.cell_m); i < i_end; ++i) {
       const double x0 = grid.x0_m + grid.cell_m * static_cast<double>(i);

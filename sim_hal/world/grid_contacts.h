@@ -22,7 +22,8 @@ Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b
 
 // Deepest contact first; others only where their normals differ from all kept ones by over 20
 // degrees (a foot in a notch). Returns how many, at most out.size(). A centre under the surface is
-// pushed out along the face above it. Cost: about 40 ns per triangle under the sphere.
+// pushed out along the face above it, or through the grid's nearest side where that is nearer: its
+// border is a wall down to height 0. Cost: about 40 ns per triangle under the sphere.
 std::size_t sphere_on_grid(const HeightGrid& grid, const Vector3& centre_m, double radius_m,
                            std::span<GridContact> out);
 

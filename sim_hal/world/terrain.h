@@ -46,6 +46,9 @@ struct HeightGrid {
   bool empty() const { return z_m.empty(); }
   double end_x_m() const { return x0_m + cell_m * static_cast<double>(nx - 1); }
   double end_y_m() const { return y0_m + cell_m * static_cast<double>(ny - 1); }
+  bool overlaps(double x0, double y0, double x1, double y1) const {
+    return !empty() && x1 >= x0_m && x0 <= end_x_m() && y1 >= y0_m && y0 <= end_y_m();
+  }
   bool contains(double x, double y) const {
     return !empty() && x >= x0_m && x <= end_x_m() && y >= y0_m && y <= end_y_m();
   }
