@@ -22,6 +22,9 @@ struct StereoConfig {
   std::uint8_t shrink = 1;
   stereo::MatcherConfig matcher;
   double least_valid_share = 0;
+  // The window of the matcher widens what stands in front: its rim is left out.
+  std::uint8_t rim_px = 0;
+  double rim_step_px = 0;
   stereo::DisparityNoise noise;
 
   template <class Self, class Visitor>
@@ -36,6 +39,10 @@ struct StereoConfig {
     visit.group("matcher", self.matcher);
     visit.real("least_valid_share", self.least_valid_share, {0.0, 1.0},
                "of the pixels that must have a disparity in range: else nothing is mapped");
+    visit.integer("rim_px", self.rim_px, {0, 8},
+                  "breadth of the rim of what stands in front that is left out");
+    visit.real("rim_step_px", self.rim_step_px, {0.1, 100.0},
+               "difference of disparity that makes it stand in front");
     stereo::DisparityNoise::describe(self.noise, visit);
   }
 };

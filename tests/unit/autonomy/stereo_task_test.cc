@@ -1,7 +1,9 @@
 // When a pair is taken, and what becomes of it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
+#include <vector>
 
 #include "core/autonomy/stereo_task.h"
 #include "core/base/random.h"
@@ -39,6 +41,7 @@ StereoConfig config() {
   config.matcher = tests::recommended_matcher();
   config.matcher.disparities = 48;
   config.least_valid_share = 0.2;
+  config.rim_step_px = 1.5;
   config.noise = tests::recommended_noise();
   return config;
 }
@@ -124,6 +127,74 @@ TEST(StereoTask, APairBecomesAPictureOfDepthOnce) {
   EXPECT_LE(picture->noise.factors[middle + 80], 2 * mapping::DepthNoise::kUnit);
   EXPECT_GT(task->valid_share(), 0.7);
   EXPECT_EQ(task->counters().pairs_matched, 1u);
+}
+
+// A square nearer than the plane behind it: the matcher makes it wider than it is.
+std::unique_ptr<hal::StereoFrame> pair_with_square(std::size_t from, std::size_t to) {
+  constexpr std::size_t kNearer_px = 30;
+  auto pair = std::make_unique<hal::StereoFrame>();
+  pair->stamp = milliseconds(40);
+  pair->width_px = kWidth_px;
+  pair->height_px = kHeight_px;
+  Random random(2);
+  // Blurred dots: one tells little of its own pixel alone.
+  std::vector<double> dots(pair->pixel_count());
+  for (double& dot : dots) dot = random.uniform(0.0, 256.0);
+  for (std::size_t i = 0; i < dots.size(); ++i) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 16; ++k) {
+      sum += dots[(i + k / 4 * kWidth_px + k % 4) % dots.size()];
+    }
+    pair->left[i] = static_cast<std::uint8_t>(std::clamp(128 + 3 * (sum / 16 - 128), 0.0, 255.0));
+    pair->right[i] = 128;
+  }
+  // What is nearer is drawn last: it hides what is behind it.
+  for (const bool square : {false, true}) {
+    const std::size_t disparity = square ? kNearer_px : kDisparity_px;
+    for (std::size_t i = disparity; i < pair->pixel_count(); ++i) {
+      const std::size_t u = i % kWidth_px;
+      const std::size_t v = i / kWidth_px;
+      const bool inside = v >= from && v < to && u >= from && u < to;
+      if (inside == square && u >= disparity) pair->right[i - disparity] = pair->left[i];
+    }
+  }
+  return pair;
+}
+
+// Pixels that were given the square's depth although they lie beside it.
+int fattened(std::uint8_t rim_px) {
+  constexpr std::size_t kFrom = 40;
+  constexpr std::size_t kTo = 80;
+  StereoConfig settings = config();
+  settings.rim_px = rim_px;
+  const auto task = std::make_unique<StereoTask>();
+  EXPECT_EQ(task->reset(camera(), settings), Status::kOk);
+  EXPECT_TRUE(task->release(*pair_with_square(kFrom, kTo)));
+  task->run();
+  task->publish();
+  const StereoPicture* const picture = task->take();
+  EXPECT_NE(picture, nullptr);
+  if (picture == nullptr) return -1;
+  const auto nearer = [&](std::size_t u, std::size_t v) {
+    const double z_m = static_cast<double>(picture->depth.depth[v * kWidth_px + u]) *
+                       static_cast<double>(picture->depth.depth_unit_m);
+    return z_m > 0 && z_m < 100 * 0.06 / 25;
+  };
+  EXPECT_TRUE(nearer(60, 60));
+  int beside = 0;
+  for (std::size_t v = 20; v < 100; ++v) {
+    for (std::size_t u = 35; u < 100; ++u) {
+      const bool square = v >= kFrom && v < kTo && u >= kFrom && u < kTo;
+      if (!square && nearer(u, v)) ++beside;
+    }
+  }
+  return beside;
+}
+
+TEST(StereoTask, TheRimOfWhatStandsInFrontIsLeftOut) {
+  const int with_rim = fattened(0);
+  EXPECT_GT(with_rim, 10);
+  EXPECT_LT(fattened(4), with_rim / 4);
 }
 
 TEST(StereoTask, ABlindPairMapsNothingAndIsCounted) {
