@@ -42,6 +42,7 @@ Json counters_json(const RunFacts& facts) {
           {"static_steps_slipped", facts.static_walk.slipped},
           {"static_steps_lowered", facts.static_walk.lowered},
           {"static_steps_tipped", facts.static_walk.tipped},
+          {"static_steps_passed_over", facts.static_walk.passed_over},
           {"static_steps_waited", facts.static_walk.waited}};
 }
 

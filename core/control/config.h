@@ -151,6 +151,9 @@ struct StaticWalkConfig {
   double lift_margin_m = 0;    // of the capture point in that triangle, for a foot to lift off
   double patience_s = 0;       // with the trunk not there yet, before the step is planned anew
   double slack_m = 0;          // a standing foot farther off is held where it is now
+  double rough_from = 0;       // mean terrain cost of the steps planned, from which on,
+  double rough_to = 0;         // and up to which stride and the trunk's speed come down
+  double rough_share = 0;      // to this share
   double caution = 0;          // share of its speed at which the trunk shifts after a mishap,
   int cautious_steps = 0;      // for so many steps
   double slip_m = 0;           // a standing foot moved by more: the one in the air comes down
@@ -168,6 +171,9 @@ struct StaticWalkConfig {
                "of the capture point in the triangle, for a foot to lift off");
     visit.real("patience_s", self.patience_s, {0.02, 60.0}, "before a step is planned anew");
     visit.real("slack_m", self.slack_m, {0.0005, 0.5}, "a standing foot farther off is let go");
+    visit.real("rough_from", self.rough_from, {0.0, 1.0}, "terrain cost of planned steps: slower");
+    visit.real("rough_to", self.rough_to, {0.0, 1.0}, "the same: as slow as it gets");
+    visit.real("rough_share", self.rough_share, {0.1, 1.0}, "of stride and trunk's speed then");
     visit.real("caution", self.caution, {0.1, 1.0}, "share of the trunk's speed after a mishap");
     visit.integer("cautious_steps", self.cautious_steps, {0, 100}, "for so many steps");
     visit.real("slip_m", self.slip_m, {0.001, 0.5}, "of a standing foot: put the other one down");

@@ -15,7 +15,8 @@ namespace {
 constexpr double kFeelsGround = 0.5;     // of a swing: before, the toe has caught on something
 constexpr double kShortestShift = 0.25;  // of shift_s: the load still goes from foot to foot
 constexpr double kMaxHeadingLag_rad = 0.15;
-constexpr double kLost_s = 0.03;     // without contact: the foot has lost its ground
+constexpr double kLost_s = 0.03;  // without contact: the foot has lost its ground
+constexpr double kRetry_s = 0.1;
 constexpr double kTipping_m = 0.01;  // of the capture point beyond the triangle
 
 }  // namespace
@@ -42,7 +43,12 @@ void StaticWalk::stand() {
   shifted_ = false;
   velocity_ = VelocityCommand{};
   blocked_s_ = 0;
+  since_try_s_ = 0;
+  avoided_O_m_.clear();
+  homeward_ = false;
+  asked_ = 0;
   cautious_ = 0;
+  pace_ = 1;
   legs_.fill(LegStatus{});
   load_.fill(1.0);
 }
@@ -93,8 +99,8 @@ const actuation::JointCommands& StaticWalk::update(const estimation::RobotState&
     case Stage::kStand:
       if (!walking) {
         blocked_s_ = 0;
-      } else if (!begin_step(state, ground)) {
-        blocked_s_ += step_s;
+      } else {
+        try_step(state, ground, step_s);
       }
       break;
     case Stage::kShift: shift(state, ground.window, step_s); break;
@@ -138,7 +144,7 @@ Vector2 StaticWalk::stride_O_m() const {
   const Vector2 stride =
       planning::from_heading(yaw_rad_, velocity_.forward_m_s, velocity_.left_m_s) * cycle_s();
   const double length_m = stride.norm();
-  const double longest_m = config_.static_walk.max_stride_m;
+  const double longest_m = config_.static_walk.max_stride_m * pace_;
   return length_m > longest_m ? Vector2(stride * (longest_m / length_m)) : stride;
 }
 
@@ -201,37 +207,75 @@ bool StaticWalk::is_tipping(const estimation::RobotState& state) const {
          !region.contains(capture_point_O_m(state));
 }
 
-// false: there is no foothold.
+// The legs are asked in their order, one a tick; one without a place is passed over. Where none has
+// one the search is repeated now and then: the map may have grown.
+void StaticWalk::try_step(const estimation::RobotState& state, const Ground& ground,
+                          double step_s) {
+  since_try_s_ += step_s;
+  const bool rests = blocked_s_ > 0 && asked_ == 0 && since_try_s_ < kRetry_s;
+  if (!rests) {
+    if (begin_step(state, ground)) return;
+    turn_ = (turn_ + 1) % robot::kLegs;
+    asked_ = (asked_ + 1) % robot::kLegs;
+    since_try_s_ = 0;
+  }
+  blocked_s_ += step_s;
+}
+
+// false: the leg has no foothold.
 bool StaticWalk::begin_step(const estimation::RobotState& state, const Ground& ground) {
   take_feet(state);
-  LegStatus& status = legs_[leg()];
-  status.foothold = choose_foothold(ground);
-  if (status.foothold.reason == FootholdReason::kNone) return false;
+  Foothold& foothold = legs_[leg()].foothold;
+  foothold = choose_foothold(state, ground);
+  if (foothold.reason == FootholdReason::kNone) return false;
+  if (asked_ > 0) ++counters_.passed_over;
+  asked_ = 0;
   blocked_s_ = 0;
-  begin_shift(state);
+  begin_shift(state, ground.terrain);
   return true;
 }
 
-Foothold StaticWalk::choose_foothold(const Ground& ground) {
-  if (ground.terrain != nullptr) return plan_foothold(*ground.terrain);
+Foothold StaticWalk::choose_foothold(const estimation::RobotState& state, const Ground& ground) {
+  if (ground.terrain != nullptr) return plan_foothold(state, *ground.terrain);
   return footholds_.choose(nominal_O_m(), ground.window, ground.rule, map_offset_.offset_m());
 }
 
-Foothold StaticWalk::plan_foothold(const terrain::TerrainMap& terrain) {
-  const planning::FootstepProblem problem{feet_O_m_, turn_, stride_O_m(), yaw_rad_,
-                                          map_offset_.offset_m()};
+Foothold StaticWalk::plan_foothold(const estimation::RobotState& state,
+                                   const terrain::TerrainMap& terrain) {
+  planning::FootstepProblem problem;
+  problem.feet_O_m = feet_O_m_;
+  problem.turn = turn_;
+  problem.stride_O_m = stride_O_m();
+  problem.yaw_rad = yaw_rad_;
+  problem.map_offset_m = map_offset_.offset_m();
+  problem.centre_offset_O_m = centre_offset_O_m(state);
+  problem.avoided_O_m = avoided_O_m_;
   planning::FootstepPlan plan;
   if (!ok(footsteps_.plan(problem, terrain, plan))) {
     const Vector3 nominal = nominal_O_m();
     return {nominal, nominal, FootholdReason::kNone};
   }
+  set_pace(plan);
   const planning::Footstep& first = plan.steps[0];
   return {first.nominal_O_m, first.position_O_m, FootholdReason::kPlanned};
 }
 
-void StaticWalk::begin_shift(const estimation::RobotState& state) {
+// Rough ground is walked in shorter strides and with a slower trunk.
+void StaticWalk::set_pace(const planning::FootstepPlan& plan) {
+  const StaticWalkConfig& config = config_.static_walk;
+  double cost = 0;
+  for (const planning::Footstep& step : plan.steps) cost += step.terrain;
+  cost /= static_cast<double>(plan.steps.size());
+  const double span = std::max(config.rough_to - config.rough_from, 1e-6);
+  const double rough = math::clamp((cost - config.rough_from) / span, 0.0, 1.0);
+  constexpr double kFollow = 0.5;  // of the difference, per step
+  pace_ += kFollow * (1.0 - rough * (1.0 - config.rough_share) - pace_);
+}
+
+void StaticWalk::begin_shift(const estimation::RobotState& state,
+                             const terrain::TerrainMap* terrain) {
   from_ = pose_now().pose;
-  plan_pose(state);
+  plan_pose(state, terrain);
   const StaticWalkConfig& config = config_.static_walk;
   // Turning moves the hips as far as the trunk is long.
   const Vector3 turn_rad = to_.roll_pitch_yaw_rad - from_.roll_pitch_yaw_rad;
@@ -240,7 +284,7 @@ void StaticWalk::begin_shift(const estimation::RobotState& state) {
                     to_.height_O_m - from_.height_O_m,
                     lever_m * math::sqrt(math::square(turn_rad[0]) + math::square(turn_rad[1])));
   const double way_m = math::sqrt(way.squaredNorm());
-  const double speed_m_s = config.shift_speed_m_s * (cautious_ > 0 ? config.caution : 1.0);
+  const double speed_m_s = config.shift_speed_m_s * pace_ * (cautious_ > 0 ? config.caution : 1.0);
   cautious_ = std::max(0, cautious_ - 1);
   duration_s_ = std::max(kShortestShift * config.shift_s, way_m / speed_m_s);
   progress_ = 0;
@@ -249,33 +293,17 @@ void StaticWalk::begin_shift(const estimation::RobotState& state) {
 }
 
 // The trunk's pose for the step under way.
-void StaticWalk::plan_pose(const estimation::RobotState& state) {
+void StaticWalk::plan_pose(const estimation::RobotState& state,
+                           const terrain::TerrainMap* terrain) {
   planning::Feet landed = feet_O_m_;
   landed[leg()] = legs_[leg()].foothold.position_O_m;
-  to_ = planning::trunk_over(model_, shape_, landed, yaw_rad_);
-  const planning::CentrePlace centre =
-      planning::place_centre(feet_O_m_, landed, turn_, shape_.margin_m, to_.centre_O_m);
-  if (centre.narrow) ++counters_.narrow;
-  to_.centre_O_m = centre.place_O_m;
-  // Lower where a leg could not reach.
-  constexpr int kTries = 6;
-  constexpr double kStep_m = 0.006;
-  for (int i = 0; i < kTries && !reachable(state); ++i) {
-    to_.height_O_m -= kStep_m;
-    if (i == 0) ++counters_.lowered;
-  }
-}
-
-bool StaticWalk::reachable(const estimation::RobotState& state) const {
-  const Vector3& rpy = to_.roll_pitch_yaw_rad;
-  const Matrix3 R_BO = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]).transpose();
-  const Vector2 origin = to_.centre_O_m - centre_offset_O_m(state);
-  const Vector3 p_OB_m(origin[0], origin[1], to_.height_O_m);
-  for (std::size_t i = 0; i < robot::kLegs; ++i) {
-    if (!ok(robot::solve_leg(model_, i, R_BO * (feet_O_m_[i] - p_OB_m)).status)) return false;
-  }
-  const Vector3 landing_B = R_BO * (legs_[leg()].foothold.position_O_m - p_OB_m);
-  return ok(robot::solve_leg(model_, leg(), landing_B).status);
+  const planning::Step way{feet_O_m_, landed, turn_, yaw_rad_, centre_offset_O_m(state)};
+  const planning::StepPose step =
+      planning::step_pose(model_, shape_, planning::step_limits(config_.footsteps),
+                          {terrain, map_offset_.offset_m()}, way);
+  to_ = step.pose;
+  if (step.narrow) ++counters_.narrow;
+  if (step.lowered) ++counters_.lowered;
 }
 
 void StaticWalk::lift(const estimation::RobotState& state, const mapping::MapWindow* window) {
@@ -293,6 +321,7 @@ void StaticWalk::lift(const estimation::RobotState& state, const mapping::MapWin
                        status.path.landing_O_m[2];
   status.swing_s = std::max(config.swing_s, way_m / config.foot_speed_m_s);
   load_[leg()] = 0;
+  homeward_ = false;
   stage_ = Stage::kSwing;
 }
 
@@ -340,12 +369,17 @@ bool StaticWalk::has_slipped(const estimation::RobotState& state) const {
   return false;
 }
 
-// To where it has stood, which bears a foot.
+// To where it has stood, which bears a foot; the place that does not is not tried again.
 void StaticWalk::go_back(const estimation::RobotState& state) {
   ++counters_.missed;
   be_cautious();
   LegStatus& status = legs_[leg()];
+  if (avoided_O_m_.full()) avoided_O_m_.clear();
+  static_cast<void>(avoided_O_m_.push_back(status.path.landing_O_m.head<2>()));
   const Vector3 home = status.path.lift_off_O_m;
+  // Nor is there ground where it stood: it hangs there until the trunk has moved.
+  if (homeward_) return put_down(state);
+  homeward_ = true;
   status.path.lift_off_O_m = state.feet[leg()].p_O_m;
   status.path.landing_O_m = home;
   status.foothold.position_O_m = home;
@@ -363,7 +397,8 @@ void StaticWalk::put_down(const estimation::RobotState& state) {
   taken_O_m_[leg()] = status.anchor_O_m;
   load_[leg()] = 1;
   ++counters_.steps;
-  turn_ = (turn_ + 1) % robot::kLegs;
+  // A foot that hangs keeps its turn: while it is asked, the others may carry.
+  if (state.feet[leg()].in_contact) turn_ = (turn_ + 1) % robot::kLegs;
   stage_ = Stage::kStand;
 }
 

@@ -16,8 +16,9 @@
 // standing foot slips, the one in the air comes down where it is.
 // Without a foothold the robot stands and blocked_s() counts.
 //
-// Frames: O, metres, N. Memory: sizeof(StaticWalk) 97 kB, most of it the search for footsteps.
-// Cost per tick: one whole-body solve, at most one foothold search or plan. No allocation.
+// Frames: O, metres, N. Memory: sizeof(StaticWalk) 106 kB, most of it the search for footsteps.
+// Cost per tick: one whole-body solve, at most one foothold search or plan for each leg, none
+// within 0.1 s of one in vain. No allocation.
 #pragma once
 
 #include <array>
@@ -40,12 +41,13 @@ namespace surefoot::control {
 // Since reset().
 struct StaticWalkCounters {
   std::uint64_t steps = 0;
-  std::uint64_t missed = 0;   // no ground where it should be: the foot went back
-  std::uint64_t narrow = 0;   // the margin had to be cut to find room over the feet
-  std::uint64_t slipped = 0;  // a standing foot gave way while another was in the air
-  std::uint64_t lowered = 0;  // a stance leg could not have reached: the trunk was lowered
-  std::uint64_t tipped = 0;   // the trunk went over its feet: the one in the air came down
-  std::uint64_t waited = 0;   // the trunk did not come to where the foot may lift: planned anew
+  std::uint64_t missed = 0;       // no ground where it should be: the foot went back
+  std::uint64_t narrow = 0;       // the margin had to be cut to find room over the feet
+  std::uint64_t slipped = 0;      // a standing foot gave way while another was in the air
+  std::uint64_t lowered = 0;      // a stance leg could not have reached: the trunk was lowered
+  std::uint64_t tipped = 0;       // the trunk went over its feet: the one in the air came down
+  std::uint64_t passed_over = 0;  // a leg had no foothold, and another stepped
+  std::uint64_t waited = 0;       // the trunk did not come to where the foot may lift: planned anew
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -55,6 +57,7 @@ struct StaticWalkCounters {
     visit("slipped", self.slipped);
     visit("lowered", self.lowered);
     visit("tipped", self.tipped);
+    visit("passed_over", self.passed_over);
     visit("waited", self.waited);
   }
 };
@@ -107,16 +110,16 @@ class StaticWalk {
   std::size_t leg() const;  // whose turn it is
   void stand();
   void take_feet(const estimation::RobotState& state);
+  void try_step(const estimation::RobotState& state, const Ground& ground, double step_s);
   bool begin_step(const estimation::RobotState& state, const Ground& ground);
-  Foothold choose_foothold(const Ground& ground);
-  Foothold plan_foothold(const terrain::TerrainMap& terrain);
-  void begin_shift(const estimation::RobotState& state);
+  Foothold choose_foothold(const estimation::RobotState& state, const Ground& ground);
+  Foothold plan_foothold(const estimation::RobotState& state, const terrain::TerrainMap& terrain);
+  void begin_shift(const estimation::RobotState& state, const terrain::TerrainMap* terrain);
   Vector2 stride_O_m() const;
   Vector3 nominal_O_m() const;
   double cycle_s() const;
   void follow(const VelocityCommand& velocity, double step_s);
-  void plan_pose(const estimation::RobotState& state);
-  bool reachable(const estimation::RobotState& state) const;
+  void plan_pose(const estimation::RobotState& state, const terrain::TerrainMap* terrain);
   Motion pose_now() const;
   Vector2 centre_offset_O_m(const estimation::RobotState& state) const;
   void lift(const estimation::RobotState& state, const mapping::MapWindow* window);
@@ -124,6 +127,7 @@ class StaticWalk {
   bool has_slipped(const estimation::RobotState& state) const;
   void follow_feet(const estimation::RobotState& state, double step_s);
   Vector2 capture_point_O_m(const estimation::RobotState& state) const;
+  void set_pace(const planning::FootstepPlan& plan);
   void be_cautious();
   bool may_lift(const estimation::RobotState& state) const;
   bool is_tipping(const estimation::RobotState& state) const;
@@ -154,12 +158,17 @@ class StaticWalk {
   planning::Feet feet_O_m_;                    // where the feet stand, the step's landing included
   planning::Feet taken_O_m_;                   // where they stood when the step began
   std::array<double, robot::kLegs> lost_s_{};  // without contact while they should stand
-  int cautious_ = 0;                           // steps still to be made slowly
-  double waited_s_ = 0;                        // for the trunk, after its shift
-  std::array<double, robot::kLegs> load_{};    // share of the load that a foot may carry, 0 to 1
-  VelocityCommand velocity_;                   // its mean over about a cycle
-  double yaw_rad_ = 0;                         // the heading to keep
+  FixedVector<Vector2, planning::kMaxAvoided> avoided_O_m_;  // where feet found no ground
+  bool homeward_ = false;  // the foot in the air has missed its ground
+  double pace_ = 1;        // share of stride and speed, by how rough the planned steps' ground is
+  std::size_t asked_ = 0;  // legs in a row that had no foothold
+  int cautious_ = 0;       // steps still to be made slowly
+  double waited_s_ = 0;    // for the trunk, after its shift
+  std::array<double, robot::kLegs> load_{};  // share of the load that a foot may carry, 0 to 1
+  VelocityCommand velocity_;                 // its mean over about a cycle
+  double yaw_rad_ = 0;                       // the heading to keep
   double blocked_s_ = 0;
+  double since_try_s_ = 0;  // the footholds were searched last
   LegStatuses legs_;
   StaticWalkCounters counters_;
   actuation::JointCommands joints_;

@@ -58,29 +58,32 @@ void FootstepCells::rate(FootstepCell& cell) const {
     ++known;
   }
   cell.usable = true;
+  cell.terrain = terrain;
   cell.height_m = height_m / known;  // the middle one has a height
+  const Edges around = edges(cell.index, cell.height_m);
   cell.cost_m = config_.terrain_weight_m * terrain + config_.spread_weight * (spread_m / known) +
-                config_.edge_weight * edge_m(cell.index, cell.height_m);
+                config_.wall_weight * around.wall_m + config_.drop_weight * around.drop_m;
 }
 
-// The most that the ground around stands up over a height or falls off below it, over the cells
+// The most that the ground around stands up over a height, and falls off below it: over the cells
 // with height whose centres are within reach.
-double FootstepCells::edge_m(mapping::CellIndex index, double height_m) const {
+FootstepCells::Edges FootstepCells::edges(mapping::CellIndex index, double height_m) const {
   const mapping::MapWindow& ground = map_->ground;
   const double reach_cells = config_.edge_reach_m / ground.cell_size_m;
-  const std::int32_t n = static_cast<std::int32_t>(
+  const auto n = static_cast<std::int32_t>(
       math::clamp(reach_cells, 0.0, static_cast<double>(kMaxEdgeReach_cells)));
-  double edge_m = 0;
+  Edges edges;
   for (std::int32_t dy = -n; dy <= n; ++dy) {
     for (std::int32_t dx = -n; dx <= n; ++dx) {
       if (static_cast<double>(dx * dx + dy * dy) > reach_cells * reach_cells) continue;
       const mapping::WindowCell* cell = ground.find(index + mapping::CellIndex{dx, dy});
       if (cell == nullptr || !cell->has_height()) continue;
-      const double off_m = math::magnitude(static_cast<double>(cell->height_m) - height_m);
-      if (off_m > edge_m) edge_m = off_m;
+      const double off_m = static_cast<double>(cell->height_m) - height_m;
+      if (off_m > edges.wall_m) edges.wall_m = off_m;
+      if (-off_m > edges.drop_m) edges.drop_m = -off_m;
     }
   }
-  return edge_m;
+  return edges;
 }
 
 }  // namespace surefoot::planning

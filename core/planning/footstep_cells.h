@@ -20,6 +20,7 @@ struct FootstepCell {
   bool rated = false;
   bool usable = false;  // it has a height and its terrain cost is within the limit
   double height_m = 0;  // in O as the map has it: mean of the known cells of the 3 x 3
+  double terrain = 0;   // its cost, 0 to 1
   double cost_m = 0;    // of terrain, spread and edge
 };
 
@@ -28,14 +29,20 @@ class FootstepCells {
   void reset(const FootstepConfig& config);
   // Forgets all ratings. The map must stay while at() is called.
   void start(const terrain::TerrainMap& map);
+  const terrain::TerrainMap* map() const { return map_; }
   // Outside the window: not usable.
   const FootstepCell& at(mapping::CellIndex index);
 
  private:
   static constexpr std::int32_t kSide = 32;
 
+  struct Edges {
+    double wall_m = 0;
+    double drop_m = 0;
+  };
+
   void rate(FootstepCell& cell) const;
-  double edge_m(mapping::CellIndex index, double height_m) const;
+  Edges edges(mapping::CellIndex index, double height_m) const;
 
   FootstepConfig config_;
   const terrain::TerrainMap* map_ = nullptr;

@@ -17,16 +17,21 @@ struct FootstepConfig {
   std::int32_t radius_cells = 0;  // half the side of the square of candidates
   std::int32_t beam = 0;          // sequences kept at every step
   // What a step must not break.
-  double max_cost = 0;        // of the terrain, 0 to 1
-  double max_step_m = 0;      // rise or drop of a foot from where it stands
-  double reach_margin_m = 0;  // left to either end of every leg's reach
-  double max_lowering_m = 0;  // of the trunk, for legs that do not reach
-  double min_inradius_m = 0;  // of the triangle of feet that stand during the next step
+  double max_cost = 0;         // of the terrain, 0 to 1
+  double max_step_m = 0;       // rise or drop of a foot from where it stands
+  double reach_margin_m = 0;   // left to either end of every leg's reach
+  double stop_margin_rad = 0;  // left to every joint's stops
+  double avoid_m = 0;          // around a place where a foot found no ground
+  double max_lowering_m = 0;   // of the trunk, for legs that do not reach
+  double max_raising_m = 0;    // of the trunk, so that nothing touches the ground
+  double min_inradius_m = 0;   // of the triangle of feet that stand during the next step
   // What it costs.
   double terrain_weight_m = 0;   // terrain cost 1
   double spread_weight = 0;      // of the filled height
   double edge_reach_m = 0;       // so far around the foot's middle edges count
-  double edge_weight = 0;        // what stands up or falls off there
+  double wall_weight = 0;        // what stands up there over the height under the foot
+  double drop_weight = 0;        // what falls off there below it
+  double collision_weight = 0;   // of trunk or legs in the ground
   double deviation_scale_m = 0;  // this far off the nominal place costs as much; quadratic
   double rise_weight = 0;        // rise or drop
   double wanted_inradius_m = 0;  // of that triangle
@@ -43,13 +48,18 @@ struct FootstepConfig {
     visit.real("max_cost", self.max_cost, {0.0, 1.0}, "terrain cost that may be stepped on");
     visit.real("max_step_m", self.max_step_m, {0.0, 0.5}, "rise or drop of a foot");
     visit.real("reach_margin_m", self.reach_margin_m, {0.0, 0.1}, "to either end of a leg's reach");
+    visit.real("stop_margin_rad", self.stop_margin_rad, {0.0, 0.5}, "to every joint's stops");
+    visit.real("avoid_m", self.avoid_m, {0.0, 0.2}, "around a place that bore no foot");
     visit.real("max_lowering_m", self.max_lowering_m, {0.0, 0.2}, "of the trunk, to reach");
+    visit.real("max_raising_m", self.max_raising_m, {0.0, 0.2}, "of the trunk, to touch nothing");
     visit.real("min_inradius_m", self.min_inradius_m, {0.001, 0.5}, "of the next step's triangle");
     visit.real("terrain_weight_m", self.terrain_weight_m, {0.0, 10.0}, "detour for terrain cost 1");
     visit.real("spread_weight", self.spread_weight, {0.0, 100.0}, "per metre of spread");
     visit.real("edge_reach_m", self.edge_reach_m, {0.0, 0.1}, "so far around a foot edges count");
-    visit.real("edge_weight", self.edge_weight, {0.0, 100.0},
-               "per metre that the ground stands up or falls off there");
+    visit.real("wall_weight", self.wall_weight, {0.0, 100.0}, "per metre that stands up there");
+    visit.real("drop_weight", self.drop_weight, {0.0, 100.0}, "per metre that falls off there");
+    visit.real("collision_weight", self.collision_weight, {0.0, 100.0},
+               "per metre that trunk or legs would be in the ground");
     visit.real("deviation_scale_m", self.deviation_scale_m, {0.001, 1.0},
                "so far off the nominal place costs as much; quadratic");
     visit.real("rise_weight", self.rise_weight, {0.0, 100.0}, "per metre of rise or drop");

@@ -9,11 +9,10 @@ namespace {
 
 constexpr double kMaxYaw_rad = 1e6;  // of math::sin_cos
 constexpr double kHalfDiagonal = 0.7072;
-constexpr double kLowering_m = 0.006;  // as the static walk does it
-constexpr int kMaxLowerings = 33;
-// In one plan. Where so many places were out of reach, a state has none beyond the first such: this
-// test is the dearest, and this bounds the whole search. Not the first step's.
-constexpr int kMaxOutOfReach = 600;
+// Beyond the usual one of each place, in one plan: this test is the dearest, and this bounds the
+// whole search. After so many a place is looked at with the trunk at its usual height only. Not the
+// first step's.
+constexpr int kMaxFurtherPoses = 3600;
 
 bool in_domain(const FootstepProblem& problem) {
   bool good = problem.turn < robot::kLegs && math::is_finite(problem.map_offset_m) &&
@@ -23,6 +22,7 @@ bool in_domain(const FootstepProblem& problem) {
     for (const double x : foot) good = good && mapping::is_mappable(x);
   }
   for (const double x : problem.stride_O_m) good = good && mapping::is_mappable(x);
+  for (const double x : problem.centre_offset_O_m) good = good && mapping::is_mappable(x);
   return good;
 }
 
@@ -40,6 +40,11 @@ struct FootstepPlanner::Expansion {
   mapping::CellIndex middle;
   Triangle standing;  // while this leg is in the air, drawn in by the margin
 };
+
+StepLimits step_limits(const FootstepConfig& config) {
+  return {config.reach_margin_m, config.stop_margin_rad, config.max_lowering_m,
+          config.max_raising_m};
+}
 
 void FootstepPlanner::reset(const FootstepConfig& config, const robot::RobotModel& model,
                             const StanceShape& shape) {
@@ -89,7 +94,7 @@ Status FootstepPlanner::plan(const FootstepProblem& problem, const terrain::Terr
 
 void FootstepPlanner::search(const FootstepProblem& problem) {
   best_ = Place{};
-  out_of_reach_ = 0;
+  further_poses_ = 0;
   for (Beam& beam : beams_) beam.ranking.clear();
   beams_[0].nodes[0] = Node{problem.feet_O_m, 0.0, 0, {}};
   static_cast<void>(beams_[0].ranking.push_back(0));
@@ -125,9 +130,7 @@ bool FootstepPlanner::expand(const FootstepProblem& problem, std::size_t depth,
     if (!wanted(depth + 1, from.cost + deviation_cost_m(offset.least_m * cell_size_m_))) {
       return true;
     }
-    const int before = out_of_reach_;
     if (offer(expansion, offset)) continues = true;
-    if (depth > 0 && out_of_reach_ > before && out_of_reach_ > kMaxOutOfReach) break;
   }
   return continues;
 }
@@ -137,15 +140,22 @@ bool FootstepPlanner::expand(const FootstepProblem& problem, std::size_t depth,
 bool FootstepPlanner::offer(const Expansion& expansion, const Offset& offset) {
   Footstep step;
   if (!rate(expansion, offset, step)) return false;
+  if (expansion.depth == 0 && is_avoided(expansion.problem, step)) return false;
   if (!wanted(expansion.depth + 1, expansion.from.cost + step.cost)) return true;
   if (!add_balance(expansion, step)) return false;
   if (!wanted(expansion.depth + 1, expansion.from.cost + step.cost)) return true;
-  if (!reaches(expansion, step)) {
-    ++out_of_reach_;
-    return false;
-  }
+  if (!reaches(expansion, step)) return false;
+  if (!wanted(expansion.depth + 1, expansion.from.cost + step.cost)) return true;
   keep(expansion, step);
   return true;
+}
+
+bool FootstepPlanner::is_avoided(const FootstepProblem& problem, const Footstep& step) const {
+  for (const Vector2& place : problem.avoided_O_m) {
+    const double away_m2 = (step.position_O_m.head<2>() - place).squaredNorm();
+    if (away_m2 < math::square(config_.avoid_m)) return true;
+  }
+  return false;
 }
 
 double FootstepPlanner::deviation_cost_m(double distance_m) const {
@@ -168,6 +178,7 @@ bool FootstepPlanner::rate(const Expansion& expansion, const Offset& offset, Foo
   step.leg = expansion.leg;
   step.position_O_m = Vector3(x, y, z);
   step.nominal_O_m = nominal;
+  step.terrain = cell.terrain;
   const double off_m2 = math::square(x - nominal[0]) + math::square(y - nominal[1]);
   step.cost = cell.cost_m + off_m2 / config_.deviation_scale_m + config_.rise_weight * rise_m;
   return true;
@@ -189,33 +200,23 @@ bool FootstepPlanner::add_balance(const Expansion& expansion, Footstep& step) co
   return true;
 }
 
-// With the trunk as the static walk poses it for this step, every leg: the one that steps at both
-// ends of its way.
-bool FootstepPlanner::reaches(const Expansion& expansion, const Footstep& step) const {
-  const Feet& feet = expansion.from.feet_O_m;
-  Feet landed = feet;
+// With the trunk as the static walk poses it for this step; what touches the ground there costs.
+bool FootstepPlanner::reaches(const Expansion& expansion, Footstep& step) {
+  Feet landed = expansion.from.feet_O_m;
   landed[expansion.leg] = step.position_O_m;
-  const TrunkPose pose = trunk_over(model_, shape_, landed, expansion.problem.yaw_rad);
-  const Vector2 centre =
-      place_centre(feet, landed, expansion.turn, shape_.margin_m, pose.centre_O_m).place_O_m;
-  const Vector3& rpy = pose.roll_pitch_yaw_rad;
-  const Matrix3 R_BO = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]).transpose();
-  const auto all_reach = [&](double height_O_m) {
-    const Vector3 p_OB_m(centre[0], centre[1], height_O_m);
-    const auto reach = [&](std::size_t leg, const Vector3& foot_O_m) {
-      return robot::can_reach(model_, leg, R_BO * (foot_O_m - p_OB_m), config_.reach_margin_m);
-    };
-    for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-      if (!reach(leg, landed[leg])) return false;
-    }
-    return reach(expansion.leg, feet[expansion.leg]);
-  };
-  for (int i = 0; i <= kMaxLowerings; ++i) {
-    const double lowered_m = i * kLowering_m;
-    if (lowered_m > config_.max_lowering_m) return false;
-    if (all_reach(pose.height_O_m - lowered_m)) return true;
+  const FootstepProblem& problem = expansion.problem;
+  const Step way{expansion.from.feet_O_m, landed, expansion.turn, problem.yaw_rad,
+                 problem.centre_offset_O_m};
+  StepLimits limits = step_limits(config_);
+  if (expansion.depth > 0 && further_poses_ >= kMaxFurtherPoses) {
+    limits.max_lowering_m = 0;
+    limits.max_raising_m = 0;
   }
-  return false;
+  const StepPose pose =
+      step_pose(model_, shape_, limits, {cells_.map(), problem.map_offset_m}, way);
+  further_poses_ += pose.tried - 1;
+  step.cost += config_.collision_weight * pose.deepest_m;
+  return pose.reaches;
 }
 
 // Whether a sequence of `depth` steps and this cost has a place in the beam.

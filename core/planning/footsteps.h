@@ -10,7 +10,7 @@
 // penalty for each missing step.
 //
 // Frames: O, metres. Feet: centres of the foot spheres, legs FR FL HR HL (robot_model.h).
-// Memory: sizeof(FootstepPlanner) 68 kB. Cost: at most (1 + 3 beam) (2 radius_cells + 1)^2
+// Memory: sizeof(FootstepPlanner) 77 kB. Cost: at most (1 + 3 beam) (2 radius_cells + 1)^2
 // candidates, most of which are dropped before the costly tests; figures in README.md. No heap.
 #pragma once
 
@@ -24,17 +24,23 @@
 #include "core/planning/footstep_cells.h"
 #include "core/planning/footstep_config.h"
 #include "core/planning/stance.h"
+#include "core/planning/step_pose.h"
 #include "core/robot/robot_model.h"
 #include "core/terrain/terrain_map.h"
 
 namespace surefoot::planning {
 
+inline constexpr std::size_t kMaxAvoided = 4;
+
 struct FootstepProblem {
   Feet feet_O_m{};
-  std::size_t turn = 0;                  // index into kStepOrder
-  Vector2 stride_O_m = Vector2::Zero();  // way of the trunk per four steps
-  double yaw_rad = 0;                    // heading of the trunk
-  double map_offset_m = 0;               // added to every height of the map
+  std::size_t turn = 0;                         // index into kStepOrder
+  Vector2 stride_O_m = Vector2::Zero();         // way of the trunk per four steps
+  double yaw_rad = 0;                           // heading of the trunk
+  double map_offset_m = 0;                      // added to every height of the map
+  Vector2 centre_offset_O_m = Vector2::Zero();  // of the centre of mass from B's origin, from above
+  // Where the first step found no ground before: it is not tried again.
+  FixedVector<Vector2, kMaxAvoided> avoided_O_m;
 };
 
 struct Footstep {
@@ -42,13 +48,16 @@ struct Footstep {
   Vector3 position_O_m = Vector3::Zero();
   Vector3 nominal_O_m = Vector3::Zero();  // z: where the foot stood
   mapping::CellIndex cell;
-  double cost = 0;  // [m]
+  double cost = 0;     // [m]
+  double terrain = 0;  // cost of the terrain there, 0 to 1
 };
 
 struct FootstepPlan {
   FixedVector<Footstep, kMaxFootsteps> steps;
   double cost = 0;  // [m] of all steps, missing ones included
 };
+
+StepLimits step_limits(const FootstepConfig& config);
 
 class FootstepPlanner {
  public:
@@ -96,7 +105,8 @@ class FootstepPlanner {
   bool offer(const Expansion& expansion, const Offset& offset);
   bool rate(const Expansion& expansion, const Offset& offset, Footstep& step);
   bool add_balance(const Expansion& expansion, Footstep& step) const;
-  bool reaches(const Expansion& expansion, const Footstep& step) const;
+  bool reaches(const Expansion& expansion, Footstep& step);
+  bool is_avoided(const FootstepProblem& problem, const Footstep& step) const;
   double deviation_cost_m(double distance_m) const;
   bool wanted(std::size_t depth, double cost) const;
   void keep(const Expansion& expansion, const Footstep& step);
@@ -112,7 +122,7 @@ class FootstepPlanner {
   Hips hips_O_m_{};
   double cell_size_m_ = 0;
   Place best_;
-  int out_of_reach_ = 0;  // candidates of this plan
+  int further_poses_ = 0;  // of this plan
 };
 
 }  // namespace surefoot::planning

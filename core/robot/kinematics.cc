@@ -112,4 +112,14 @@ bool can_reach(const RobotModel& model, std::size_t leg, const Vector3& p_B_m, d
   return longest_m > 0 && reach_m2 >= shortest_m * shortest_m && reach_m2 <= longest_m * longest_m;
 }
 
+bool within_stops(const RobotModel& model, std::size_t leg, const LegVector& q_rad,
+                  double margin_rad) {
+  for (std::size_t i = 0; i < kJointsPerLeg; ++i) {
+    const JointRange range = model.joint_range(joint_index(leg, i));
+    const double q = q_rad[static_cast<Eigen::Index>(i)];
+    if (q < range.min_rad + margin_rad || q > range.max_rad - margin_rad) return false;
+  }
+  return true;
+}
+
 }  // namespace surefoot::robot

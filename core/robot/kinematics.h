@@ -43,6 +43,10 @@ LegSolution solve_leg(const RobotModel& model, std::size_t leg, const Vector3& p
 // flops, no angle.
 bool can_reach(const RobotModel& model, std::size_t leg, const Vector3& p_B_m, double margin_m);
 
+// Whether these angles lie between the mechanical stops, with `margin_rad` left to each.
+bool within_stops(const RobotModel& model, std::size_t leg, const LegVector& q_rad,
+                  double margin_rad);
+
 // Abduction joint and, outwards from it, the hip joint with the abduction angle at zero, in B [m].
 Vector3 abduction_joint_B_m(const RobotModel& model, std::size_t leg);
 Vector3 hip_joint_B_m(const RobotModel& model, std::size_t leg);

@@ -16,6 +16,8 @@ inline RobotModel little_dog() {
   m.shank_length_m = 0.1020;
   m.foot_radius_m = 0.0103;
   m.hind_knees_forward = true;
+  m.thigh_radius_m = 0.012;
+  m.shank_radius_m = 0.006;
   m.abad = {0.0623, {0, 0.0029, 0}, {4e-6, 15e-6, 15e-6, 0, 0, 0}};
   m.thigh = {0.1279, {0, 0, -0.0166}, {82e-6, 89e-6, 15e-6, 0, 0, 0}};
   m.shank = {0.0464, {0.0053, 0, -0.0195}, {38e-6, 35e-6, 6e-6, 0, 0, 0}};

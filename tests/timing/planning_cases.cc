@@ -39,14 +39,22 @@ class RoughGround final : public Footsteps {
 // Ground that gets better with the distance from every nominal place, so that each candidate is
 // better than those before it, and legs that are short by most of their length, so that hardly any
 // place is reached and none drops out for its cost.
-class WorstGround final : public Footsteps {
+class WorstGround : public Footsteps {
  public:
   bool prepare(std::size_t round) override {
     if (round > 0) return false;
+    lay_ground(0.0475, 0.0);
+    return true;
+  }
+  bool did_the_work() override { return ok(status_) && plan_.steps.size() < 4; }
+
+ protected:
+  // With a wall of that height along the way, under the belly.
+  void lay_ground(double reach_margin_m, double wall_m) {
     planning::FootstepConfig config = tests::footstep_config();
     config.deviation_scale_m = 1.0;
     config.terrain_weight_m = 1.0;
-    config.reach_margin_m = 0.0475;
+    config.reach_margin_m = reach_margin_m;
     reset(config);
     problem_.feet_O_m = tests::standing_feet(model_);
     problem_.stride_O_m = Vector2(0.06, 0.01);
@@ -62,11 +70,21 @@ class WorstGround final : public Footsteps {
       for (const Vector3& place : places) {
         nearest_m = std::min(nearest_m, (cell - place.head<2>()).norm());
       }
-      return tests::GroundCell{.cost = 0.7 - 0.7 / 0.15 * nearest_m};
+      const double height_m = i.iy >= -2 && i.iy <= 2 ? wall_m : 0.0;
+      return tests::GroundCell{.height_m = height_m, .cost = 0.7 - 0.7 / 0.15 * nearest_m};
     });
+  }
+};
+
+// The same with good legs, and whatever the trunk does it is in the ground.
+class CrowdedGround final : public WorstGround {
+ public:
+  bool prepare(std::size_t round) override {
+    if (round > 0) return false;
+    lay_ground(0.004, 0.14);
     return true;
   }
-  bool did_the_work() override { return ok(status_) && plan_.steps.size() < 4; }
+  bool did_the_work() override { return ok(status_) && plan_.steps.size() == 4; }
 };
 
 template <class Case>
@@ -80,6 +98,8 @@ const WorkEntry kPlanningCases[] = {
     {"footsteps_rough", "a plan of four steps on rough ground", make<RoughGround>},
     {"footsteps_worst", "every place dearer to test than the last, few in reach",
      make<WorstGround>},
+    {"footsteps_crowded", "the same with all in reach and the trunk in the ground",
+     make<CrowdedGround>},
     {nullptr, nullptr, nullptr}};
 
 }  // namespace surefoot::timing

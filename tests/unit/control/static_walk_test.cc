@@ -317,5 +317,105 @@ TEST(StaticWalk, StandsAndCountsWhereNoFootstepIsFound) {
   EXPECT_EQ(world.walk->counters().steps, 0U);
 }
 
+// The hind right leg has its turn, and all the ground around its place is bad.
+TEST(StaticWalk, ALegWithoutAFootholdIsPassedOver) {
+  StaticWalkWorld world;
+  const auto map = tests::terrain_of([](mapping::CellIndex i) {
+    return tests::GroundCell{.cost = i.ix < 0 && i.iy < 0 ? 0.9 : 0.0};
+  });
+  for (int i = 0; i < 1000 && world.in_the_air() == 0; ++i) {
+    world.tick(forward(0.06), true, nullptr, map.get());
+  }
+  EXPECT_EQ(world.walk->legs()[robot::kFrontRight].mode, LegMode::kSwing);
+  EXPECT_EQ(world.walk->counters().passed_over, 1U);
+  EXPECT_EQ(world.walk->blocked_s(), 0.0);
+  for (int i = 0; i < 1000 && world.walk->counters().steps < 2; ++i) {
+    world.tick(forward(0.06), true, nullptr, map.get());
+  }
+  EXPECT_EQ(world.walk->counters().passed_over, 1U);  // the next two legs have their places
+}
+
+// The place that the hind right foot goes to when its turn comes again after it has missed the
+// ground on a robot that steps on the spot, from that first place.
+double second_try_m(double avoid_m) {
+  ControlConfig config = tests::static_walk_config();
+  config.footsteps.avoid_m = avoid_m;
+  StaticWalkWorld world(config);
+  const auto map = tests::flat_terrain();
+  const auto tick = [&] { world.tick({}, true, nullptr, map.get()); };
+  const LegStatus& leg = world.walk->legs()[robot::kHindRight];
+  world.ground_m[robot::kHindRight] = -1.0;
+  for (int i = 0; i < 1000 && leg.mode == LegMode::kStance; ++i) tick();
+  const Vector2 first = leg.path.landing_O_m.head<2>();
+  for (int i = 0; i < 1000 && world.walk->counters().missed == 0; ++i) tick();
+  world.ground_m[robot::kHindRight] = 0.0;
+  for (int i = 0; i < 4000 && leg.mode != LegMode::kStance; ++i) tick();
+  for (int i = 0; i < 4000 && leg.mode == LegMode::kStance; ++i) tick();
+  EXPECT_EQ(leg.mode, LegMode::kSwing);
+  EXPECT_EQ(world.walk->counters().missed, 1U);
+  return (leg.path.landing_O_m.head<2>() - first).norm();
+}
+
+TEST(StaticWalk, APlaceWithoutGroundIsAvoided) {
+  EXPECT_LT(second_try_m(0.0), 0.005);
+  EXPECT_GE(second_try_m(0.012), 0.012);
+}
+
+// Neither at the new place nor at the old one: the foot stays in the air as one that stands there,
+// and looks for the ground further down.
+TEST(StaticWalk, AFootThatMissesItsGroundTwiceHangsThere) {
+  StaticWalkWorld world;
+  world.ground_m[robot::kHindRight] = -1.0;
+  for (int i = 0; i < 3000 && world.walk->counters().missed < 2; ++i) {
+    world.tick(forward(0.06), true);
+  }
+  EXPECT_EQ(world.walk->counters().missed, 2U);
+  EXPECT_EQ(world.walk->legs()[robot::kHindRight].mode, LegMode::kStance);
+  EXPECT_EQ(world.in_the_air(), 0);
+  // It keeps its turn: the others carry, and it looks for another place.
+  for (int i = 0; i < 1000 && world.in_the_air() == 0; ++i) world.tick(forward(0.06), true);
+  EXPECT_EQ(world.walk->legs()[robot::kHindRight].mode, LegMode::kSwing);
+}
+
+// What feet met before a start is not remembered after it.
+TEST(StaticWalk, AStartForgetsAvoidedPlaces) {
+  const auto map = tests::flat_terrain();
+  const auto landing_m = [&](bool missed_before) {
+    StaticWalkWorld world;
+    const estimation::RobotState begin = world.state;
+    if (missed_before) {
+      world.ground_m[robot::kHindRight] = -1.0;
+      for (int i = 0; i < 3000 && world.walk->counters().missed == 0; ++i) {
+        world.tick({}, true, nullptr, map.get());
+      }
+      EXPECT_EQ(world.walk->counters().missed, 1U);
+      world.ground_m[robot::kHindRight] = 0.0;
+    }
+    world.state = begin;
+    world.walk->start(world.state);
+    world.tick({}, true, nullptr, map.get());
+    return world.walk->legs()[robot::kHindRight].foothold.position_O_m;
+  };
+  EXPECT_EQ(landing_m(true), landing_m(false));
+}
+
+// A search costs milliseconds at worst: one leg is asked in a tick, and when all four have been
+// asked in vain a blocked robot waits for 0.1 s.
+TEST(StaticWalk, ABlockedRobotSearchesAgainAfterATenthOfASecond) {
+  StaticWalkWorld world;
+  const auto unknown =
+      tests::terrain_of([](mapping::CellIndex) { return tests::GroundCell{.known = false}; });
+  const auto flat = tests::flat_terrain();
+  for (int leg = 0; leg < 4; ++leg) world.tick(forward(0.06), true, nullptr, unknown.get());
+  ASSERT_GT(world.walk->blocked_s(), 0.0);
+  int ticks = 0;
+  for (; ticks < 200 && world.walk->at_rest(); ++ticks) {
+    world.tick(forward(0.06), true, nullptr, flat.get());
+  }
+  EXPECT_GE(ticks, 50);
+  EXPECT_LE(ticks, 52);
+  EXPECT_EQ(world.walk->blocked_s(), 0.0);
+}
+
 }  // namespace
 }  // namespace surefoot::control

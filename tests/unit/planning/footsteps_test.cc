@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <memory>
 
@@ -17,7 +18,7 @@ using tests::rough_problem;
 using tests::rough_terrain;
 
 constexpr double kCell_m = 0.01;
-static_assert(sizeof(FootstepPlanner) < 68'000);
+static_assert(sizeof(FootstepPlanner) < 80'000);
 
 // A robot whose feet are where the first step of every plan puts them.
 struct Walker {
@@ -118,17 +119,124 @@ TEST(Footsteps, PreferGroundThatWasSeen) {
   EXPECT_TRUE(walker.step(*all));
 }
 
-// A ledge of 2 cm along y: no foot is set down with its edge beside it.
-TEST(Footsteps, KeepOffEdges) {
-  const auto map = tests::terrain_of(
+// A ledge of 2 cm along y, from cell 17 on.
+std::unique_ptr<terrain::TerrainMap> ledge() {
+  return tests::terrain_of(
       [](mapping::CellIndex i) { return GroundCell{.height_m = i.ix >= 17 ? 0.02 : 0.0}; });
+}
+
+// Steps of a walk over it into the two columns below its edge and above it.
+struct BesideTheEdge {
+  int below = 0;
+  int above = 0;
+};
+BesideTheEdge walk_over_ledge(double wall_weight, double drop_weight) {
+  const auto map = ledge();
   FootstepConfig config = tests::footstep_config();
-  config.edge_weight = 2.0;
-  Walker walker(config);
-  for (int i = 0; i < 20; ++i) {
-    ASSERT_TRUE(walker.step(*map));
-    EXPECT_NE(walker.plan.steps[0].cell.ix, 16);
+  config.wall_weight = wall_weight;
+  config.drop_weight = drop_weight;
+  BesideTheEdge beside;
+  for (int way = 0; way < 8; ++way) {
+    Walker walker(config);
+    for (Vector3& foot : walker.problem.feet_O_m) foot[0] += 0.01 * way - 0.04;
+    for (int i = 0; i < 16; ++i) {
+      if (!walker.step(*map)) {
+        ADD_FAILURE() << "step " << i;
+        break;
+      }
+      const std::int32_t ix = walker.plan.steps[0].cell.ix;
+      beside.below += ix == 15 || ix == 16 ? 1 : 0;
+      beside.above += ix == 17 || ix == 18 ? 1 : 0;
+    }
   }
+  return beside;
+}
+
+TEST(Footsteps, KeepOffEdges) {
+  const BesideTheEdge careless = walk_over_ledge(0.0, 0.0);
+  EXPECT_GT(careless.below, 0);
+  EXPECT_GT(careless.above, 0);
+  const BesideTheEdge no_drop = walk_over_ledge(0.0, 2.0);
+  EXPECT_EQ(no_drop.above, 0);
+  EXPECT_GT(no_drop.below, 0);
+  const BesideTheEdge no_wall = walk_over_ledge(2.0, 0.0);
+  EXPECT_GT(no_wall.above, 0);
+  EXPECT_LT(no_wall.below, careless.below);
+}
+
+// A trench of three cells under the nominal place: its walls hold a foot, its edges do not.
+TEST(Footsteps, StandInAPitBesideWallsUnlessWallsCost) {
+  FootstepConfig config = tests::footstep_config();
+  config.steps = 1;
+  config.wall_weight = 0.0;
+  config.drop_weight = 2.0;
+  Walker walker(config);
+  ASSERT_TRUE(ok(walker.planner->plan(walker.problem, *tests::flat_terrain(), walker.plan)));
+  const std::int32_t middle = walker.plan.steps[0].cell.ix;
+  const auto trench = tests::terrain_of([middle](mapping::CellIndex i) {
+    return GroundCell{.height_m = std::abs(i.ix - middle) <= 1 ? -0.03 : 0.0};
+  });
+  ASSERT_TRUE(ok(walker.planner->plan(walker.problem, *trench, walker.plan)));
+  EXPECT_EQ(walker.plan.steps[0].cell.ix, middle);
+  EXPECT_NEAR(walker.plan.steps[0].position_O_m[2], walker.model.foot_radius_m - 0.03, 1e-6);
+  config.wall_weight = 2.0;
+  Walker careful(config);
+  ASSERT_TRUE(ok(careful.planner->plan(careful.problem, *trench, careful.plan)));
+  EXPECT_GT(std::abs(careful.plan.steps[0].cell.ix - middle), 1);
+}
+
+// Only the first step: what comes later is planned anew by then.
+TEST(Footsteps, TheFirstStepGoesToNoPlaceThatIsAvoided) {
+  const auto map = tests::flat_terrain();
+  Walker walker;
+  walker.problem.turn = 2;
+  ASSERT_TRUE(ok(walker.planner->plan(walker.problem, *map, walker.plan)));
+  const FootstepPlan free = walker.plan;
+  const double avoid_m = tests::footstep_config().avoid_m;
+  while (!walker.problem.avoided_O_m.full()) {
+    const Vector2 place = walker.plan.steps[0].position_O_m.head<2>();
+    ASSERT_TRUE(ok(walker.problem.avoided_O_m.push_back(place)));
+    ASSERT_TRUE(ok(walker.planner->plan(walker.problem, *map, walker.plan)));
+    for (const Vector2& bad : walker.problem.avoided_O_m) {
+      EXPECT_GE((walker.plan.steps[0].position_O_m.head<2>() - bad).norm(), avoid_m);
+    }
+    EXPECT_GT(walker.plan.cost, free.cost);
+  }
+  walker.problem.avoided_O_m.clear();
+  for (std::size_t i = 1; i < free.steps.size(); ++i) {
+    const Vector2 place = free.steps[i].position_O_m.head<2>();
+    ASSERT_TRUE(ok(walker.problem.avoided_O_m.push_back(place)));
+  }
+  ASSERT_TRUE(ok(walker.planner->plan(walker.problem, *map, walker.plan)));
+  EXPECT_EQ(walker.plan.cost, free.cost);
+}
+
+TEST(Footsteps, NoPlanWhereTheOnlyPlaceIsAvoided) {
+  const auto map = tests::flat_terrain();
+  FootstepConfig config = tests::footstep_config();
+  config.radius_cells = 0;
+  Walker walker(config);
+  ASSERT_TRUE(ok(walker.planner->plan(walker.problem, *map, walker.plan)));
+  const Vector2 place = walker.plan.steps[0].position_O_m.head<2>() + Vector2(0.008, 0.008);
+  ASSERT_TRUE(ok(walker.problem.avoided_O_m.push_back(place)));
+  EXPECT_EQ(walker.planner->plan(walker.problem, *map, walker.plan), Status::kNotFound);
+}
+
+// A rock under the place of a shank or of the belly: another place is chosen.
+TEST(Footsteps, WhatTouchesTheGroundCosts) {
+  FootstepConfig config = tests::footstep_config();
+  config.steps = 1;
+  const auto rock = tests::terrain_of([](mapping::CellIndex i) {
+    return GroundCell{.height_m = std::abs(i.ix) < 4 && std::abs(i.iy) < 3 ? 0.14 : 0.0};
+  });
+  const auto cost_m = [&](double weight) {
+    config.collision_weight = weight;
+    Walker walker(config);
+    EXPECT_TRUE(ok(walker.planner->plan(walker.problem, *rock, walker.plan)));
+    return walker.plan.cost;
+  };
+  // Trunk 3 cm below its origin, 13 cm high and 18 mm more.
+  EXPECT_NEAR(cost_m(1.0) - cost_m(0.0), 0.14 - (0.13 + 0.018 - 0.03), 0.002);
 }
 
 TEST(Footsteps, NeverOnUnknownGround) {
@@ -306,13 +414,14 @@ TEST(Footsteps, SaysWhyThereIsNoPlan) {
   EXPECT_EQ(plan(walker.problem, *never), Status::kUnavailable);
   EXPECT_EQ(plan(walker.problem, *unknown), Status::kNotFound);
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), -1e300}) {
-    for (int k = 0; k < 5; ++k) {
+    for (int k = 0; k < 6; ++k) {
       FootstepProblem problem = walker.problem;
       if (k == 0) problem.feet_O_m[3][0] = bad;
       if (k == 1) problem.feet_O_m[0][2] = bad;
       if (k == 2) problem.stride_O_m[1] = bad;
       if (k == 3) problem.yaw_rad = bad;
       if (k == 4) problem.map_offset_m = bad;
+      if (k == 5) problem.centre_offset_O_m[0] = bad;
       EXPECT_EQ(plan(problem, *map), Status::kInvalid) << bad << " in " << k;
     }
   }

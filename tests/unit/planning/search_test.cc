@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -53,6 +54,14 @@ std::unique_ptr<terrain::TerrainMap> stones(std::uint64_t seed, double share) {
   });
 }
 
+// Where the first step would have gone there was no ground.
+void avoid_best_place(Search& search, const terrain::TerrainMap& map, FootstepProblem& problem) {
+  FootstepPlan plan;
+  if (!ok(search.plan(problem, map, plan))) return;
+  const Vector2 place = plan.steps[0].position_O_m.head<2>();
+  static_cast<void>(problem.avoided_O_m.push_back(place));
+}
+
 TEST(FootstepSearch, FindsTheBestOfAllSequencesWhereTheBeamHoldsThem) {
   Search search = exact_search();
   search.config.beam = 32;
@@ -62,7 +71,9 @@ TEST(FootstepSearch, FindsTheBestOfAllSequencesWhereTheBeamHoldsThem) {
   for (std::uint64_t seed = 1; seed <= 600; ++seed) {
     search.config.radius_cells = seed % 2 == 0 ? 1 : 2;
     const auto map = stones(seed, seed % 2 == 0 ? 0.2 : 0.07);
-    const FootstepProblem problem = rough_problem(seed, search.model, *map);
+    FootstepProblem problem = rough_problem(seed, search.model, *map);
+    problem.centre_offset_O_m = Vector2(0.004, -0.003);
+    if (seed % 3 == 0) avoid_best_place(search, *map, problem);
     FootstepPlan plan;
     const Status status = search.plan(problem, *map, plan);
     FootstepOracle oracle(search.config, search.model, search.shape, problem, *map);
@@ -125,7 +136,8 @@ TEST(FootstepSearch, ComesCloseToTheBestOnRoughGround) {
                   kBeams[i], e[25], e[45], e[49], exact);
     }
     EXPECT_LT(excess.back()[25], 0.001);
-    EXPECT_LT(excess.back()[49], 0.04);
+    EXPECT_LT(excess.back()[45], 0.005);
+    EXPECT_LT(excess.back()[49], 0.25);  // one where the bound of the work is met
     EXPECT_GT(excess.front()[49], 0.02);  // the ground is not so plain that any search would do
   }
 }
@@ -177,6 +189,8 @@ TEST(FootstepSearch, LookingAheadGetsStuckLessOften) {
 TEST(FootstepSearch, CountsWhatItsStepsCost) {
   Search search = exact_search();
   int steps = 0;
+  int touching = 0;
+  int exact = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const auto map = rough_terrain(seed);
     const FootstepProblem problem = rough_problem(seed, search.model, *map);
@@ -187,17 +201,26 @@ TEST(FootstepSearch, CountsWhatItsStepsCost) {
     double sum = 0;
     for (std::size_t i = 0; i < plan.steps.size(); ++i) {
       Footstep again = plan.steps[i];
-      const double cost = oracle.step_cost(feet, i, oracle.nominal(feet, i), again);
-      EXPECT_NEAR(cost, plan.steps[i].cost, 1e-12);
+      const std::optional<double> deep_m = oracle.deepest_m(feet, i, again.position_O_m);
+      ASSERT_TRUE(deep_m) << seed << " step " << i;
+      const double cost = oracle.step_cost(feet, i, oracle.nominal(feet, i), again) +
+                          search.config.collision_weight * *deep_m;
+      // Late in a dear search not all poses are tried: more is counted then, never less.
+      const bool same = std::abs(cost - plan.steps[i].cost) < 1e-9;
+      EXPECT_TRUE(same || (i > 0 && cost < plan.steps[i].cost)) << seed << " step " << i;
+      exact += same ? 1 : 0;
+      touching += *deep_m > 0 ? 1 : 0;
       EXPECT_NEAR(again.position_O_m[2], plan.steps[i].position_O_m[2], 1e-12);
       feet[again.leg] = again.position_O_m;
-      sum += cost;
+      sum += plan.steps[i].cost;
       ++steps;
     }
     const auto missing = static_cast<double>(4 - plan.steps.size());
-    EXPECT_NEAR(sum + missing * search.config.missing_step_m, plan.cost, 1e-12);
+    EXPECT_NEAR(sum + missing * search.config.missing_step_m, plan.cost, 1e-9);
   }
   EXPECT_GE(steps, 200);
+  EXPECT_GE(exact, steps * 98 / 100);
+  EXPECT_GE(touching, 10);  // what touches the ground is in the sums
 }
 
 TEST(FootstepSearch, EveryLegReachesByInverseKinematics) {
@@ -211,7 +234,7 @@ TEST(FootstepSearch, EveryLegReachesByInverseKinematics) {
     const FootstepOracle oracle(search.config, search.model, search.shape, problem, *map);
     Feet feet = problem.feet_O_m;
     for (std::size_t i = 0; i < plan.steps.size(); ++i) {
-      EXPECT_TRUE(oracle.solvable(feet, i, plan.steps[i].position_O_m)) << seed << " step " << i;
+      EXPECT_TRUE(oracle.deepest_m(feet, i, plan.steps[i].position_O_m)) << seed << " step " << i;
       feet[plan.steps[i].leg] = plan.steps[i].position_O_m;
       ++steps;
     }

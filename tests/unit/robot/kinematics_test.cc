@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "core/base/random.h"
@@ -170,6 +171,36 @@ TEST(Kinematics, ShankAngularVelocityAgreesWithTheMovingKneeAndFoot) {
     const Vector3 rate =
         ((next.p_B_m[3] - next.p_B_m[2]) - (last.p_B_m[3] - last.p_B_m[2])) / (2 * kStep);
     EXPECT_LT((shank_angular_velocity_B(q, qd).cross(shank) - rate).norm(), 1e-8);
+  }
+}
+
+// Every joint of every leg in turn, next to either of its stops; the others in the middle.
+TEST(Kinematics, WithinStopsLeavesItsMarginToEitherStop) {
+  constexpr double kMargin_rad = 0.03;
+  constexpr double kLittle_rad = 1e-9;
+  for (const RobotModel& model : {little_dog(), full_mini_cheetah()}) {
+    std::array<double, kJointsPerLeg> middle{};
+    for (std::size_t i = 0; i < kJointsPerLeg; ++i) {
+      middle[i] = 0.5 * (model.actuators[i].min_rad + model.actuators[i].max_rad);
+    }
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+      // Angles of the front left leg, for which the stops are stated.
+      const auto within = [&](std::size_t joint, double q_rad) {
+        std::array<double, kJointsPerLeg> pose = middle;
+        pose[joint] = q_rad;
+        pose = model.pose_of(leg, pose);
+        return within_stops(model, leg, {pose[0], pose[1], pose[2]}, kMargin_rad);
+      };
+      for (std::size_t joint = 0; joint < kJointsPerLeg; ++joint) {
+        const double low = model.actuators[joint].min_rad + kMargin_rad;
+        const double high = model.actuators[joint].max_rad - kMargin_rad;
+        EXPECT_TRUE(within(joint, middle[joint]));
+        EXPECT_TRUE(within(joint, low + kLittle_rad)) << leg << ' ' << joint;
+        EXPECT_FALSE(within(joint, low - kLittle_rad)) << leg << ' ' << joint;
+        EXPECT_TRUE(within(joint, high - kLittle_rad)) << leg << ' ' << joint;
+        EXPECT_FALSE(within(joint, high + kLittle_rad)) << leg << ' ' << joint;
+      }
+    }
   }
 }
 
