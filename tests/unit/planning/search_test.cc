@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/support/rough_footsteps.h"
+#include "tests/support/samples.h"
 #include "tests/unit/planning/footstep_oracle.h"
 
 namespace surefoot::planning {
@@ -99,12 +100,16 @@ TEST(FootstepSearch, FindsTheBestOfAllSequencesWhereTheBeamHoldsThem) {
 
 constexpr std::array<int, 3> kBeams{1, 4, 16};
 
-// By how much of the best each beam's plans cost more, sorted, on 50 rough terrains.
+constexpr std::size_t kTerrains = tests::samples(50, 2);
+constexpr std::uint64_t kWalks = tests::samples(200, 10);
+constexpr bool kInFull = kTerrains == 50;  // what is said of many terrains is said then
+
+// By how much of the best each beam's plans cost more, sorted, on rough terrains.
 std::array<std::vector<double>, kBeams.size()> excess_of_beams(int steps) {
   Search search = exact_search();
   search.config.steps = steps;
   std::array<std::vector<double>, kBeams.size()> excess;
-  for (std::uint64_t seed = 1; excess[0].size() < 50 && seed < 200; ++seed) {
+  for (std::uint64_t seed = 1; excess[0].size() < kTerrains && seed < 200; ++seed) {
     const auto map = rough_terrain(seed);
     const FootstepProblem problem = rough_problem(seed, search.model, *map);
     std::array<FootstepPlan, kBeams.size()> plans;
@@ -130,14 +135,17 @@ TEST(FootstepSearch, ComesCloseToTheBestOnRoughGround) {
     const auto excess = excess_of_beams(steps);
     for (std::size_t i = 0; i < kBeams.size(); ++i) {
       const std::vector<double>& e = excess[i];
-      ASSERT_EQ(e.size(), 50U);
+      ASSERT_EQ(e.size(), kTerrains);
+      if (!kInFull) continue;
       const auto exact = std::count_if(e.begin(), e.end(), [](double x) { return x < 1e-6; });
       std::printf("steps %d, beam %2d: median %.4f, 90 %% %.4f, worst %.4f, exact %td\n", steps,
                   kBeams[i], e[25], e[45], e[49], exact);
     }
+    EXPECT_LT(excess.back()[kTerrains / 2], 0.25);
+    if (!kInFull) continue;
     EXPECT_LT(excess.back()[25], 0.001);
     EXPECT_LT(excess.back()[45], 0.005);
-    EXPECT_LT(excess.back()[49], 0.25);  // one where the bound of the work is met
+    EXPECT_LT(excess.back()[49], 0.25);   // one where the bound of the work is met
     EXPECT_GT(excess.front()[49], 0.02);  // the ground is not so plain that any search would do
   }
 }
@@ -152,7 +160,7 @@ Walked walk_rough_ground(const FootstepConfig& config) {
   Search search;
   search.config = config;
   Walked walked;
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kWalks; ++seed) {
     const auto map = rough_terrain(seed);
     FootstepProblem problem = rough_problem(seed, search.model, *map);
     problem.stride_O_m = Vector2(0.08, 0.0);
@@ -180,8 +188,10 @@ TEST(FootstepSearch, LookingAheadGetsStuckLessOften) {
   config.steps = 1;
   const Walked near = walk_rough_ground(config);
   for (const Walked& walked : {near, far}) {
-    std::printf("stuck %d of 200, %.5f m per step\n", walked.stuck, walked.cost / walked.steps);
+    std::printf("stuck %d, %.5f m per step\n", walked.stuck, walked.cost / walked.steps);
+    EXPECT_GT(walked.steps, 0);
   }
+  if (!kInFull) return;
   EXPECT_LT(far.stuck, near.stuck);
   EXPECT_LT(far.cost / far.steps, 0.99 * near.cost / near.steps);
 }
