@@ -388,16 +388,19 @@ bool Autonomy::begin_stereo(const TickInputs& inputs) {
   return stereo_.release(*inputs.stereo);
 }
 
+// What the robot's eyes have made of the ground in this tick, once; frame null: nothing.
+Autonomy::Sight Autonomy::take_sight(const TickInputs& inputs) {
+  if (!stereo_.enabled()) return {inputs.depth_fresh ? inputs.depth : nullptr, nullptr};
+  const StereoPicture* const picture = stereo_.take();
+  if (picture == nullptr) return {};
+  return {&picture->depth, &picture->noise};
+}
+
 bool Autonomy::begin_localisation(const TickInputs& inputs) {
   if (!localisation_.enabled() || !walking_ready_) return false;
-  if (stereo_.enabled()) {
-    const StereoPicture* const picture = stereo_.take();
-    if (picture == nullptr) return false;
-    return localisation_.release(picture->depth, &picture->noise,
-                                 history_.at(picture->depth.stamp));
-  }
-  if (!inputs.depth_fresh) return false;
-  return localisation_.release(*inputs.depth, nullptr, history_.at(inputs.depth->stamp));
+  const Sight sight = take_sight(inputs);
+  return sight.frame != nullptr &&
+         localisation_.release(*sight.frame, sight.noise, history_.at(sight.frame->stamp));
 }
 
 // Dead reckoning was off: O stays where the map is, and the robot is elsewhere in it.
@@ -413,17 +416,13 @@ bool Autonomy::begin_mapping(const TickInputs& inputs) {
   if (!walking_ready_) return false;
   const Vector3& centre_O_m = estimator_.state().p_OB_m;
   if (localisation_.enabled()) {
-    LocalisationTask::Picture picture;
-    return localisation_.take(picture) &&
-           map_.release(*picture.frame, picture.noise, picture.pose, centre_O_m);
+    const PosedPicture* const picture = localisation_.take();
+    return picture != nullptr &&
+           map_.release(picture->frame, picture->noise(), picture->pose, centre_O_m);
   }
-  if (stereo_.enabled()) {
-    const StereoPicture* const picture = stereo_.take();
-    return picture != nullptr && map_.release(picture->depth, &picture->noise,
-                                              history_.at(picture->depth.stamp), centre_O_m);
-  }
-  return inputs.depth_fresh &&
-         map_.release(*inputs.depth, nullptr, history_.at(inputs.depth->stamp), centre_O_m);
+  const Sight sight = take_sight(inputs);
+  return sight.frame != nullptr &&
+         map_.release(*sight.frame, sight.noise, history_.at(sight.frame->stamp), centre_O_m);
 }
 
 bool Autonomy::begin_terrain(const TickInputs&) {

@@ -113,6 +113,11 @@ class Autonomy {
   void report_localisation();
   void report_terrain();
   void level_on_pad();
+  struct Sight {
+    const hal::DepthFrame* frame = nullptr;
+    const mapping::DepthNoise* noise = nullptr;  // null: the sensor's
+  };
+  Sight take_sight(const TickInputs& inputs);
 
   robot::RobotModel model_;
   AutonomyConfig config_;

@@ -46,8 +46,7 @@ Status LocalisationTask::reset(const LocalisationConfig& config,
 
 // No page fault may happen in a tick.
 void LocalisationTask::touch() {
-  frame_.depth.fill(0);
-  noise_.factors.fill(0);
+  picture_.touch();
   image_.z_m.fill(0);
   image_.nearest_m.fill(0);
   image_.mixed.fill(0);
@@ -78,13 +77,7 @@ bool LocalisationTask::release(const hal::DepthFrame& frame, const mapping::Dept
     ++counters_.without_pose;
     return false;
   }
-  pose_ = pose.value();
-  frame_.assign(frame);
-  has_noise_ = noise != nullptr;
-  if (has_noise_) {
-    std::copy_n(noise->factors.begin(), std::min(frame.pixel_count(), noise_.factors.size()),
-                noise_.factors.begin());
-  }
+  picture_.assign(frame, noise, pose.value());
   return true;
 }
 
@@ -92,7 +85,7 @@ void LocalisationTask::run() {
   gather();
   add_to_source();
   working_ = registration::Registration{};
-  working_.X_TS = source_pose(pose_);
+  working_.X_TS = source_pose(picture_.pose);
   working_status_ = Status::kOk;
   if (scan_count_ > 0) {
     build_target();
@@ -103,8 +96,8 @@ void LocalisationTask::run() {
 
 // The picture's points in B: no mixed pixels, none on the robot itself, none that are too noisy.
 void LocalisationTask::gather() {
-  mapping::prepare(frame_, mapping_, camera_.sensor, image_, has_noise_ ? &noise_ : nullptr);
-  const mapping::SelfModel self = self_model(model_, pose_);
+  mapping::prepare(picture_.frame, mapping_, camera_.sensor, image_, picture_.noise());
+  const mapping::SelfModel self = self_model(model_, picture_.pose);
   const mapping::SelfFilter self_filter(self, mapping_.self_inflation_m);
   points_.clear();
   for (std::int32_t v = 0; v < image_.height; ++v) {
@@ -131,8 +124,7 @@ void LocalisationTask::add_to_source() {
   SUREFOOT_ASSERT(ok(source_.reset(config_.registration.cell_m)));
   for (const Point& p : points_) {
     // A full cloud counts what it refuses; the cells it knows still take points.
-    static_cast<void>(source_.add(Vector3(
-        static_cast<double>(p.x_B_m), static_cast<double>(p.y_B_m), static_cast<double>(p.z_B_m))));
+    static_cast<void>(source_.add(p.p_B_m()));
   }
   static_cast<void>(source_.finish());
 }
@@ -142,9 +134,7 @@ void LocalisationTask::build_target() {
   for (std::size_t i = 0; i < scan_count_; ++i) {
     const Scan& scan = scans_[i];
     for (const Point& p : scan.points) {
-      const Vector3 p_B(static_cast<double>(p.x_B_m), static_cast<double>(p.y_B_m),
-                        static_cast<double>(p.z_B_m));
-      static_cast<void>(target_.add(scan.X_OB.rotation.matrix * p_B + scan.X_OB.origin.m));
+      static_cast<void>(target_.add(scan.X_OB.rotation.matrix * p.p_B_m() + scan.X_OB.origin.m));
     }
   }
   static_cast<void>(target_.finish());
@@ -179,7 +169,7 @@ void LocalisationTask::keep_scan(const registration::SourcePose& X_OB) {
 }
 
 void LocalisationTask::publish() {
-  const registration::SourcePose prior = source_pose(pose_);
+  const registration::SourcePose prior = source_pose(picture_.pose);
   switch (working_status_) {
     case Status::kOk: ++(working_.pairs > 0 ? counters_.registered : counters_.first); break;
     case Status::kUnavailable: ++counters_.thin; break;
@@ -187,22 +177,19 @@ void LocalisationTask::publish() {
     default: ++counters_.unmatched; break;
   }
   registration_ = working_;
-  found_ = pose_;
-  found_.p_OB_m = working_.X_TS.origin.m;
-  found_.q_OB = geometry::to_quaternion(working_.X_TS.rotation.matrix);
-  shift_.pivot_O_m = pose_.p_OB_m;
-  shift_.shift_O_m = found_.p_OB_m - pose_.p_OB_m;
+  PastPose& pose = picture_.pose;
+  shift_.pivot_O_m = pose.p_OB_m;
+  shift_.shift_O_m = working_.X_TS.origin.m - pose.p_OB_m;
   shift_.yaw_rad = turned_rad(prior.rotation.matrix, working_.X_TS.rotation.matrix);
+  pose.p_OB_m = working_.X_TS.origin.m;
+  pose.q_OB = geometry::to_quaternion(working_.X_TS.rotation.matrix);
   fresh_ = true;
 }
 
-bool LocalisationTask::take(Picture& out) {
-  if (!fresh_) return false;
+const PosedPicture* LocalisationTask::take() {
+  if (!fresh_) return nullptr;
   fresh_ = false;
-  out.frame = &frame_;
-  out.noise = has_noise_ ? &noise_ : nullptr;
-  out.pose = found_;
-  return true;
+  return &picture_;
 }
 
 }  // namespace surefoot::autonomy

@@ -20,6 +20,7 @@
 #include "core/autonomy/localisation_counters.h"
 #include "core/autonomy/map_task.h"
 #include "core/autonomy/pose_history.h"
+#include "core/autonomy/posed_picture.h"
 #include "core/base/fixed_vector.h"
 #include "core/mapping/depth_image.h"
 #include "core/registration/registration.h"
@@ -43,13 +44,9 @@ class LocalisationTask {
   void run();
   void publish();
 
-  // The picture published last, once, from where it was registered; null: taken, or none yet.
-  struct Picture {
-    const hal::DepthFrame* frame = nullptr;
-    const mapping::DepthNoise* noise = nullptr;
-    PastPose pose;
-  };
-  bool take(Picture& out);
+  // The picture published last, once, with the pose that it was registered at; null: taken, or none
+  // yet.
+  const PosedPicture* take();
 
   // How far dead reckoning was off at the picture published last.
   const OdometryShift& shift() const { return shift_; }
@@ -62,6 +59,10 @@ class LocalisationTask {
     float x_B_m = 0;
     float y_B_m = 0;
     float z_B_m = 0;
+
+    Vector3 p_B_m() const {
+      return {static_cast<double>(x_B_m), static_cast<double>(y_B_m), static_cast<double>(z_B_m)};
+    }
   };
   // Every third pixel or so: a scan takes part of the picture's points.
   static constexpr std::size_t kScanPoints = 6144;
@@ -82,10 +83,7 @@ class LocalisationTask {
   mapping::MappingConfig mapping_;
   robot::RobotModel model_;
   MapCamera camera_;
-  hal::DepthFrame frame_{};
-  mapping::DepthNoise noise_{};
-  bool has_noise_ = false;
-  PastPose pose_;
+  PosedPicture picture_;
   mapping::DepthImage image_;
   FixedVector<Point, mapping::kMaxPixels> points_;  // of the picture
   std::array<Scan, kMaxScans> scans_{};             // a ring of config_.scans
@@ -97,7 +95,6 @@ class LocalisationTask {
   registration::Registration working_;  // written by run()
   Status working_status_ = Status::kUnavailable;
   bool fresh_ = false;
-  PastPose found_;  // the pose of the picture published last
   OdometryShift shift_;
   registration::Registration registration_;
   LocalisationCounters counters_;

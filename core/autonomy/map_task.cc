@@ -1,7 +1,5 @@
 #include "core/autonomy/map_task.h"
 
-#include <algorithm>
-
 #include "core/robot/kinematics.h"
 
 namespace surefoot::autonomy {
@@ -42,9 +40,7 @@ Status MapTask::reset(const mapping::MappingConfig& config,
   const Status status = mapper_.configure(config, camera.sensor, limits);
   if (!ok(status)) return status;
   // Touch every page now: no page fault may happen in a tick.
-  frame_.depth.fill(0);
-  has_noise_ = false;
-  noise_.factors.fill(0);
+  picture_.touch();
   working_.clear();
   window_.clear();
   window_digest_ = window_.digest();
@@ -78,13 +74,7 @@ bool MapTask::release(const hal::DepthFrame& frame, const mapping::DepthNoise* n
     ++counters_.frames_without_pose;
     return false;
   }
-  pose_ = pose.value();
-  frame_.assign(frame);
-  has_noise_ = noise != nullptr;
-  if (has_noise_) {
-    std::copy_n(noise->factors.begin(), std::min(frame.pixel_count(), noise_.factors.size()),
-                noise_.factors.begin());
-  }
+  picture_.assign(frame, noise, pose.value());
   window_centre_O_m_ = window_centre_O_m;
   return true;
 }
@@ -113,10 +103,10 @@ mapping::SelfModel self_model(const robot::RobotModel& model, const PastPose& po
 }
 
 void MapTask::run() {
-  const mapping::SelfModel self = self_model(model_, pose_);
+  const mapping::SelfModel self = self_model(model_, picture_.pose);
   mapping::IntegrationReport report;
   const Status status =
-      mapper_.integrate(frame_, self.X_OB * X_BC_, self, &report, has_noise_ ? &noise_ : nullptr);
+      mapper_.integrate(picture_.frame, self.X_OB * X_BC_, self, &report, picture_.noise());
   if (ok(status)) {
     ++counters_.frames_integrated;
     if (report.rows_put_off + report.rays_put_off > 0) ++counters_.frames_bounded;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/autonomy/pose_history.h"
+#include "core/autonomy/posed_picture.h"
 #include "core/mapping/mapper.h"
 #include "core/obstacles/field_pool.h"
 #include "core/robot/robot_model.h"
@@ -78,10 +79,7 @@ class MapTask {
   robot::RobotModel model_;
   bool enabled_ = false;
   geometry::Pose<geometry::Body, geometry::DepthCamera> X_BC_;
-  hal::DepthFrame frame_{};
-  bool has_noise_ = false;
-  mapping::DepthNoise noise_{};
-  PastPose pose_;
+  PosedPicture picture_;
   Vector3 window_centre_O_m_ = Vector3::Zero();
   MapTaskCounters counters_;
   mapping::Mapper mapper_;

@@ -134,11 +134,11 @@ TEST(LocalisationTask, FindsHowFarDeadReckoningWasOff) {
   EXPECT_NEAR(shift.shift_O_m[2], -0.002, 0.0005);
   EXPECT_NEAR(shift.yaw_rad, -0.003, 0.0015);
   EXPECT_EQ(walk.task->observed_directions(), 6);
-  LocalisationTask::Picture found;
-  ASSERT_TRUE(walk.task->take(found));
-  EXPECT_LT((found.pose.p_OB_m - truth.p_OB_m).norm(), 0.0015);
-  EXPECT_EQ(found.frame->stamp, truth.stamp);
-  EXPECT_FALSE(walk.task->take(found));
+  const PosedPicture* const found = walk.task->take();
+  ASSERT_NE(found, nullptr);
+  EXPECT_LT((found->pose.p_OB_m - truth.p_OB_m).norm(), 0.0015);
+  EXPECT_EQ(found->frame.stamp, truth.stamp);
+  EXPECT_EQ(walk.task->take(), nullptr);
   EXPECT_EQ(walk.task->counters().first, 1u);
   EXPECT_EQ(walk.task->counters().registered, 4u);
 }
@@ -166,9 +166,9 @@ TEST(LocalisationTask, WhatDeadReckoningCannotHaveDoneIsNotBelieved) {
   walk.look(truth, far);
   EXPECT_EQ(walk.task->counters().implausible, 1u);
   EXPECT_EQ(walk.task->shift().shift_O_m, Vector3(Vector3::Zero()));
-  LocalisationTask::Picture picture;
-  ASSERT_TRUE(walk.task->take(picture));
-  EXPECT_EQ(picture.pose.p_OB_m, far.p_OB_m);
+  const PosedPicture* const picture = walk.task->take();
+  ASSERT_NE(picture, nullptr);
+  EXPECT_EQ(picture->pose.p_OB_m, far.p_OB_m);
 }
 
 TEST(LocalisationTask, AfterForgettingThePictureIsTheFirst) {
