@@ -18,6 +18,24 @@ constexpr std::uint32_t kTerrainBudget_us = 2000;  // a slice
 
 Autonomy& of(void* self) { return *static_cast<Autonomy*>(self); }
 
+using Release = bool (Autonomy::*)(const TickInputs&);
+using Action = void (Autonomy::*)();
+
+// Each of the autonomy's tasks has its three functions there.
+template <Release kRelease, Action kRun, Action kPublish>
+runtime::Task slow_task(Autonomy& autonomy, const char* name, std::uint32_t latency_ticks,
+                        std::uint32_t budget_us) {
+  runtime::Task task;
+  task.name = name;
+  task.latency_ticks = latency_ticks;
+  task.budget_us = budget_us;
+  task.self = &autonomy;
+  task.release = [](void* self, const TickInputs& inputs) { return (of(self).*kRelease)(inputs); };
+  task.run = [](void* self) { (of(self).*kRun)(); };
+  task.publish = [](void* self, TickOutputs&) { (of(self).*kPublish)(); };
+  return task;
+}
+
 runtime::Task control_task(Autonomy& autonomy) {
   runtime::Task task;
   task.name = "control";
@@ -34,76 +52,34 @@ runtime::Task control_task(Autonomy& autonomy) {
 
 // After control in the table: the problem is that of the tick's own state.
 runtime::Task mpc_task(Autonomy& autonomy) {
-  runtime::Task task;
-  task.name = "mpc";
+  runtime::Task task = slow_task<&Autonomy::begin_mpc, &Autonomy::run_mpc, &Autonomy::publish_mpc>(
+      autonomy, "mpc", autonomy::kMpcLatencyTicks, kMpcBudget_us);
   task.period_ticks = autonomy::kMpcPeriodTicks;
-  task.latency_ticks = autonomy::kMpcLatencyTicks;
-  task.budget_us = kMpcBudget_us;
-  task.self = &autonomy;
-  task.release = [](void* self, const TickInputs& inputs) { return of(self).begin_mpc(inputs); };
-  task.run = [](void* self) { of(self).run_mpc(); };
-  task.publish = [](void* self, TickOutputs&) { of(self).publish_mpc(); };
   return task;
 }
 
-// Before mapping in the table, which takes what it publishes. A pair is asked for at most every
-// stereo.least_interval_s.
+// From here on in the order of the data's way: each takes what the one before publishes in the same
+// tick. A pair is asked for at most every stereo.least_interval_s.
 runtime::Task stereo_task(Autonomy& autonomy) {
-  runtime::Task task;
-  task.name = "stereo";
-  task.latency_ticks = autonomy::kStereoLatencyTicks;
-  task.budget_us = kStereoBudget_us;
-  task.self = &autonomy;
-  task.release = [](void* self, const TickInputs& inputs) { return of(self).begin_stereo(inputs); };
-  task.run = [](void* self) { of(self).run_stereo(); };
-  task.publish = [](void* self, TickOutputs&) { of(self).publish_stereo(); };
-  return task;
+  return slow_task<&Autonomy::begin_stereo, &Autonomy::run_stereo, &Autonomy::publish_stereo>(
+      autonomy, "stereo", autonomy::kStereoLatencyTicks, kStereoBudget_us);
 }
 
-// Between stereo and mapping in the table: it takes what the one publishes, and the other takes
-// what it publishes.
 runtime::Task localisation_task(Autonomy& autonomy) {
-  runtime::Task task;
-  task.name = "localisation";
-  task.latency_ticks = autonomy::kLocalisationLatencyTicks;
-  task.budget_us = kLocalisationBudget_us;
-  task.self = &autonomy;
-  task.release = [](void* self, const TickInputs& inputs) {
-    return of(self).begin_localisation(inputs);
-  };
-  task.run = [](void* self) { of(self).run_localisation(); };
-  task.publish = [](void* self, TickOutputs&) { of(self).publish_localisation(); };
-  return task;
+  return slow_task<&Autonomy::begin_localisation, &Autonomy::run_localisation,
+                   &Autonomy::publish_localisation>(
+      autonomy, "localisation", autonomy::kLocalisationLatencyTicks, kLocalisationBudget_us);
 }
 
-// After control in the table: a frame is mapped with the pose history of the tick that brought it.
+// A frame is mapped with the pose history of the tick that brought it.
 runtime::Task mapping_task(Autonomy& autonomy) {
-  runtime::Task task;
-  task.name = "mapping";
-  task.latency_ticks = autonomy::kMapLatencyTicks;
-  task.budget_us = kMappingBudget_us;
-  task.self = &autonomy;
-  task.release = [](void* self, const TickInputs& inputs) {
-    return of(self).begin_mapping(inputs);
-  };
-  task.run = [](void* self) { of(self).run_mapping(); };
-  task.publish = [](void* self, TickOutputs&) { of(self).publish_mapping(); };
-  return task;
+  return slow_task<&Autonomy::begin_mapping, &Autonomy::run_mapping, &Autonomy::publish_mapping>(
+      autonomy, "mapping", autonomy::kMapLatencyTicks, kMappingBudget_us);
 }
 
-// After mapping in the table: it takes the window that is published in the same tick.
 runtime::Task terrain_task(Autonomy& autonomy) {
-  runtime::Task task;
-  task.name = "terrain";
-  task.latency_ticks = autonomy::kTerrainLatencyTicks;
-  task.budget_us = kTerrainBudget_us;
-  task.self = &autonomy;
-  task.release = [](void* self, const TickInputs& inputs) {
-    return of(self).begin_terrain(inputs);
-  };
-  task.run = [](void* self) { of(self).run_terrain(); };
-  task.publish = [](void* self, TickOutputs&) { of(self).publish_terrain(); };
-  return task;
+  return slow_task<&Autonomy::begin_terrain, &Autonomy::run_terrain, &Autonomy::publish_terrain>(
+      autonomy, "terrain", autonomy::kTerrainLatencyTicks, kTerrainBudget_us);
 }
 
 }  // namespace
