@@ -1,15 +1,8 @@
 #include "core/autonomy/terrain_task.h"
 
-#include "core/math/elementary.h"
+#include "core/terrain/table_index.h"
 
 namespace surefoot::autonomy {
-namespace {
-
-constexpr double kSameCell = 1e-9;  // relative: sizes from two texts
-
-bool is_same(double a, double b) { return math::magnitude(a - b) <= kSameCell * b; }
-
-}  // namespace
 
 Status TerrainTask::reset(const TerrainConfig& config, double map_cell_m) {
   enabled_ = false;
@@ -21,7 +14,8 @@ Status TerrainTask::reset(const TerrainConfig& config, double map_cell_m) {
   if (!config.present) return Status::kOk;
   RangeCheck check;
   TerrainConfig::describe(config, check);
-  if (!check.good || !is_same(config.model.cell_m, map_cell_m)) return Status::kInvalid;
+  if (!check.good || !terrain::same_cell_size(config.model.cell_m, map_cell_m))
+    return Status::kInvalid;
   if (!ok(filler_.configure(config.synthesis)) || !ok(cost_.configure(config.cost)) ||
       !ok(terrain::make_library(config.model, config.synthesis.patch_cells, scratch_, library_))) {
     return Status::kInvalid;
@@ -74,7 +68,7 @@ void TerrainTask::load() {
   const Status loaded = terrain::load(working_.ground, grid_);
   SUREFOOT_ASSERT(ok(loaded));
   working_counters_ = TerrainCounters{};
-  if (config_.fill == FillUse::kOn) {
+  if (fills()) {
     refused_ = !ok(filler_.start(grid_, library_, prior_, view_rad_));
     stage_ = refused_ ? Stage::kDone : Stage::kFill;
     return;
@@ -87,15 +81,13 @@ void TerrainTask::load() {
 void TerrainTask::start_cost() {
   SUREFOOT_ASSERT(ok(cost_.start()));
   draw_ = 0;
-  const bool filled = config_.fill == FillUse::kOn;
-  SUREFOOT_ASSERT(ok(cost_.add(filled ? filler_.draw(0) : terrain::view_of(bare_))));
+  SUREFOOT_ASSERT(ok(cost_.add(fills() ? filler_.draw(0) : terrain::view_of(bare_))));
   stage_ = Stage::kCost;
 }
 
 void TerrainTask::rate() {
   if (!cost_.advance(config_.cost_rows)) return;
-  const bool filled = config_.fill == FillUse::kOn;
-  if (filled && ++draw_ < filler_.draws()) {
+  if (fills() && ++draw_ < filler_.draws()) {
     SUREFOOT_ASSERT(ok(cost_.add(filler_.draw(draw_))));
     return;
   }
@@ -104,8 +96,7 @@ void TerrainTask::rate() {
 }
 
 void TerrainTask::complete() {
-  const bool filled = config_.fill == FillUse::kOn;
-  const terrain::FilledTerrain& ground = filled ? filler_.result() : bare_;
+  const terrain::FilledTerrain& ground = fills() ? filler_.result() : bare_;
   for (std::size_t i = 0; i < terrain::TerrainMap::kCells; ++i) {
     mapping::WindowCell& cell = working_.ground.cells[i];
     working_.cost[i] = 0;
@@ -121,7 +112,7 @@ void TerrainTask::complete() {
     cell.bridged = true;
     working_.spread_m[i] = ground.spread_m[i];
   }
-  if (filled) working_counters_.no_patch = static_cast<std::uint64_t>(filler_.counts().no_patch);
+  if (fills()) working_counters_.no_patch = static_cast<std::uint64_t>(filler_.counts().no_patch);
   working_digest_ = working_.digest();
 }
 

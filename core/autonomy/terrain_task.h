@@ -39,6 +39,7 @@ class TerrainTask {
  private:
   enum class Stage : std::uint8_t { kIdle, kLoad, kFill, kCost, kDone };
 
+  bool fills() const { return config_.fill == FillUse::kOn; }
   void touch();
   void load();
   void start_cost();

@@ -8,12 +8,9 @@ namespace surefoot::terrain {
 
 namespace {
 
-constexpr double kSameCell = 1e-9;
 // Whole steps along the view lie within 1.5 sides of cell (0, 0), to either side.
 constexpr std::int32_t kKeyOffset = 2 * kMaxSide;
 constexpr std::size_t kKeys = 4 * static_cast<std::size_t>(kMaxSide);
-
-bool is_same(double a, double b) { return math::magnitude(a - b) <= kSameCell * b; }
 
 // Draws depend on the cell's place in the map and not on the window: a cell that stays unseen
 // meets the same candidates again when the window has moved.
@@ -86,8 +83,9 @@ Status TerrainFiller::start(const TerrainGrid& grid, const PatchLibrary& library
   if (!configured_ || library.patches() == 0) return Status::kUnavailable;
   if (config_.guide > 0 && !prior.exists()) return Status::kUnavailable;
   if (!ok(validate(prior)) || !(view_rad >= -10 && view_rad <= 10)) return Status::kInvalid;
-  if (library.patch_cells() != config_.patch_cells || !is_same(library.cell_m(), grid.cell_m) ||
-      (prior.exists() && !is_same(prior.cell_m, grid.cell_m))) {
+  if (library.patch_cells() != config_.patch_cells ||
+      !same_cell_size(library.cell_m(), grid.cell_m) ||
+      (prior.exists() && !same_cell_size(prior.cell_m, grid.cell_m))) {
     return Status::kOutOfRange;
   }
   std::int32_t measured = 0;

@@ -7,14 +7,6 @@
 
 namespace surefoot::terrain {
 
-namespace {
-
-constexpr double kSameCell = 1e-9;  // relative: sizes from two texts
-
-bool is_same(double a, double b) { return math::magnitude(a - b) <= kSameCell * b; }
-
-}  // namespace
-
 Status PatchLibrary::reset(double cell_m, std::int32_t patch_cells) {
   const bool patch = patch_cells >= 3 && patch_cells <= kMaxPatch_cells && patch_cells % 2 == 1;
   if (!patch || !(cell_m >= 0.001 && cell_m <= 1.0)) return Status::kInvalid;
@@ -29,7 +21,7 @@ Status PatchLibrary::reset(double cell_m, std::int32_t patch_cells) {
 Status PatchLibrary::add(const Provenance& provenance, std::int32_t columns, std::int32_t rows,
                          double cell_m, std::span<const float> heights_m) {
   if (patch_cells_ == 0) return Status::kUnavailable;
-  if (columns < patch_cells_ || rows < patch_cells_ || !is_same(cell_m, cell_m_)) {
+  if (columns < patch_cells_ || rows < patch_cells_ || !same_cell_size(cell_m, cell_m_)) {
     return Status::kOutOfRange;
   }
   const std::uint64_t cells =
