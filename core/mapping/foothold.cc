@@ -64,20 +64,6 @@ Status check(const MapWindow& window, const FootholdQuery& query) {
   return in_range ? Status::kOk : Status::kOutOfRange;
 }
 
-// Mean of the known cells of the 3 x 3: less noise than one cell, and over a steppable cell no
-// step.
-double ground_height(const MapWindow& window, CellIndex centre) {
-  double sum = 0;
-  int count = 0;
-  for (std::int32_t i = 0; i < 9; ++i) {
-    const WindowCell* cell = window.find(centre + CellIndex{i % 3 - 1, i / 3 - 1});
-    if (cell == nullptr || !cell->has_height()) continue;
-    sum += static_cast<double>(cell->height_m);
-    ++count;
-  }
-  return sum / count;  // the centre is steppable, so it has a height
-}
-
 bool reachable(const FootholdQuery& query, double x, double y, double z) {
   if (!(z >= query.min_z_O_m && z <= query.max_z_O_m)) return false;
   if (!(query.reach_m > 0)) return true;
@@ -86,6 +72,18 @@ bool reachable(const FootholdQuery& query, double x, double y, double z) {
 }
 
 }  // namespace
+
+double ground_under_foot_m(const MapWindow& window, CellIndex centre) {
+  double sum = 0;
+  int count = 0;
+  for (std::int32_t i = 0; i < 9; ++i) {
+    const WindowCell* cell = window.find(centre + CellIndex{i % 3 - 1, i / 3 - 1});
+    if (cell == nullptr || !cell->has_height()) continue;
+    sum += static_cast<double>(cell->height_m);
+    ++count;
+  }
+  return sum / count;
+}
 
 Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& query) {
   const Status status = check(window, query);
@@ -111,7 +109,7 @@ Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& que
         math::sqrt(math::square(x - query.x_O_m) + math::square(y - query.y_O_m));
     const double cost = distance + query.margin_weight_m * (kMaxMargin_cells - cell->margin_cells);
     if (distance > query.max_radius_m || (found && cost >= best_cost)) continue;
-    const double z = ground_height(window, index);
+    const double z = ground_under_foot_m(window, index);
     if (!reachable(query, x, y, z)) continue;
     best = {x, y, z, index, i != 0, distance};
     best_cost = cost;
@@ -127,7 +125,7 @@ Result<double> level_ground_m(const MapWindow& window, double x_O_m, double y_O_
   const WindowCell& cell = window.at(index.value());
   const bool level = cell.traversability == Traversability::kSteppable && cell.margin_cells > 1;
   if (!level) return Status::kNotFound;
-  return ground_height(window, index.value());
+  return ground_under_foot_m(window, index.value());
 }
 
 }  // namespace surefoot::mapping

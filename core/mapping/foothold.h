@@ -46,6 +46,10 @@ struct Foothold {
 // window.
 Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& query);
 
+// Mean height of the cells with height of the 3 x 3 around a cell that has one: less noise than one
+// cell, and over a steppable cell no step.
+double ground_under_foot_m(const MapWindow& window, CellIndex centre);
+
 // Height of the ground under a foot at a place around which the ground bears feet everywhere: the
 // mean as in Foothold::z_O_m. Errors as MapWindow::locate; kNotFound: not steppable, or something
 // that is not is next to it.

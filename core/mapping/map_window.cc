@@ -38,9 +38,7 @@ bool MapWindow::contains(CellIndex i) const {
 }
 
 const WindowCell* MapWindow::find(CellIndex i) const {
-  if (!contains(i)) return nullptr;
-  return &cells[static_cast<std::size_t>(i.iy - first.iy) * kWindowSide +
-                static_cast<std::size_t>(i.ix - first.ix)];
+  return contains(i) ? &cells[place(i)] : nullptr;
 }
 
 const WindowCell& MapWindow::at(CellIndex i) const {

@@ -58,6 +58,11 @@ struct MapWindow {
   void clear();
 
   bool contains(CellIndex i) const;
+  // Of a cell inside, in `cells`.
+  std::size_t place(CellIndex i) const {
+    return static_cast<std::size_t>(i.iy - first.iy) * kWindowSide +
+           static_cast<std::size_t>(i.ix - first.ix);
+  }
   // nullptr: outside.
   const WindowCell* find(CellIndex i) const;
   // i must be inside.

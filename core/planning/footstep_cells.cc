@@ -1,16 +1,12 @@
 #include "core/planning/footstep_cells.h"
 
+#include "core/mapping/foothold.h"
 #include "core/math/elementary.h"
 
 namespace surefoot::planning {
 namespace {
 
 constexpr std::int32_t kMaxEdgeReach_cells = 4;
-
-std::size_t place_in_window(const mapping::MapWindow& window, mapping::CellIndex i) {
-  return static_cast<std::size_t>(i.iy - window.first.iy) * mapping::kWindowSide +
-         static_cast<std::size_t>(i.ix - window.first.ix);
-}
 
 // Unlike %, never negative.
 std::size_t wrapped(std::int32_t i, std::int32_t side) {
@@ -44,22 +40,20 @@ void FootstepCells::rate(FootstepCell& cell) const {
   const mapping::MapWindow& ground = map_->ground;
   const mapping::WindowCell* middle = ground.find(cell.index);
   if (middle == nullptr || !middle->has_height()) return;
-  const double terrain = static_cast<double>(map_->cost[place_in_window(ground, cell.index)]);
+  const double terrain = static_cast<double>(map_->cost[ground.place(cell.index)]);
   if (!(terrain <= config_.max_cost)) return;
-  double height_m = 0;
   double spread_m = 0;
   int known = 0;
   for (std::int32_t i = 0; i < 9; ++i) {
     const mapping::CellIndex at = cell.index + mapping::CellIndex{i % 3 - 1, i / 3 - 1};
     const mapping::WindowCell* around = ground.find(at);
     if (around == nullptr || !around->has_height()) continue;
-    height_m += static_cast<double>(around->height_m);
-    spread_m += static_cast<double>(map_->spread_m[place_in_window(ground, at)]);
+    spread_m += static_cast<double>(map_->spread_m[ground.place(at)]);
     ++known;
   }
   cell.usable = true;
   cell.terrain = terrain;
-  cell.height_m = height_m / known;  // the middle one has a height
+  cell.height_m = mapping::ground_under_foot_m(ground, cell.index);
   const Edges around = edges(cell.index, cell.height_m);
   cell.cost_m = config_.terrain_weight_m * terrain + config_.spread_weight * (spread_m / known) +
                 config_.wall_weight * around.wall_m + config_.drop_weight * around.drop_m;
