@@ -120,25 +120,6 @@ void StereoTask::run() {
   fill(pictures_[working_]);
 }
 
-// Whether something farther away lies within rim_px, along the row or the column: census and
-// smoothing see the nearer surface wherever it fills part of their window, so that it grows by
-// about that much.
-bool StereoTask::is_rim(std::size_t u, std::size_t v) const {
-  const int step = static_cast<int>(config_.rim_step_px * stereo::kSubpixels);
-  const int own = disparities_.row(v)[u];
-  const auto farther = [&](std::size_t x, std::size_t y) {
-    const std::int16_t there = disparities_.row(y)[x];
-    return there != stereo::kNoDisparity && there > 0 && own - there > step;
-  };
-  for (std::size_t k = 1; k <= config_.rim_px; ++k) {
-    if (u >= k && farther(u - k, v)) return true;
-    if (u + k < plan_.pair.width_px && farther(u + k, v)) return true;
-    if (v >= k && farther(u, v - k)) return true;
-    if (v + k < plan_.pair.height_px && farther(u, v + k)) return true;
-  }
-  return false;
-}
-
 // The disparities without the margin, as depth along the axis of N.
 void StereoTask::fill(StereoPicture& picture) {
   const stereo::RectifiedPair& pair = plan_.pair;
@@ -161,7 +142,7 @@ void StereoTask::fill(StereoPicture& picture) {
       if (row[u] == stereo::kNoDisparity || row[u] <= 0) continue;
       const double z_m = numerator / row[u];
       if (z_m < camera_.sensor.min_range_m || z_m > camera_.sensor.max_range_m) continue;
-      if (is_rim(u, v)) continue;
+      if (is_foreground_rim(disparities_, u, v, config_.rim_px, config_.rim_step_px)) continue;
       const double sigma_px = math::sqrt(disparity_variance_px2(disparities_, u, v, config_.noise));
       picture.depth.depth[i] = static_cast<std::uint16_t>(z_m / unit_m + 0.5);
       picture.noise.factors[i] =

@@ -92,7 +92,6 @@ class StereoTask {
 
  private:
   void fill(StereoPicture& picture);
-  bool is_rim(std::size_t u, std::size_t v) const;
   void warm_up();
 
   bool enabled_ = false;

@@ -31,6 +31,23 @@ double disparity_variance_px2(const DisparityImage& image, std::size_t u, std::s
          noise.relief_share * noise.relief_share * relief2;
 }
 
+bool is_foreground_rim(const DisparityImage& image, std::size_t u, std::size_t v,
+                       std::size_t rim_px, double step_px) {
+  const int step = static_cast<int>(step_px * kSubpixels);
+  const int own = image.row(v)[u];
+  const auto farther = [&](std::size_t x, std::size_t y) {
+    const std::int16_t there = image.row(y)[x];
+    return there != kNoDisparity && there > 0 && own - there > step;
+  };
+  for (std::size_t k = 1; k <= rim_px; ++k) {
+    if (u >= k && farther(u - k, v)) return true;
+    if (u + k < image.width_px && farther(u + k, v)) return true;
+    if (v >= k && farther(u, v - k)) return true;
+    if (v + k < image.height_px && farther(u, v + k)) return true;
+  }
+  return false;
+}
+
 Status make_points(const DisparityImage& image, const RectifiedPair& pair,
                    const PointConfig& config, PointCloud& out) {
   out.clear();

@@ -63,6 +63,13 @@ inline constexpr std::size_t kReliefReach_px = 3;
 double disparity_variance_px2(const DisparityImage& image, std::size_t u, std::size_t v,
                               const DisparityNoise& noise);
 
+// Whether something farther away, by more than step_px of disparity, lies within rim_px of the
+// pixel, along the row or the column: census and smoothing see the nearer surface wherever it fills
+// part of their window, so that what stands in front grows by about that much. Pixels without
+// disparity tell nothing; the pixel itself must have one.
+bool is_foreground_rim(const DisparityImage& image, std::size_t u, std::size_t v,
+                       std::size_t rim_px, double step_px);
+
 // sigma_z = z^2 / (focal baseline) sigma_d.
 // kExhausted: kMaxPoints reached, the rows below are left out. kInvalid: sizes differ, or a value
 // of the configuration is out of range; the cloud is empty then. Cost: O(pixels).
