@@ -44,15 +44,4 @@ double leg_depth_m(const robot::RobotModel& model, const PlanningGround& ground,
   return greater(thigh_m, at(0.5 * (p_B[2] + p_B[3]), model.shank_radius_m));
 }
 
-double deepest_contact_m(const robot::RobotModel& model, const PlanningGround& ground,
-                         const Matrix3& R_OB, const Vector3& p_OB_m, const Feet& feet_O_m) {
-  double deepest_m = greater(0.0, trunk_depth_m(model, ground, R_OB, p_OB_m));
-  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    const Vector3 foot_B = R_OB.transpose() * (feet_O_m[leg] - p_OB_m);
-    const robot::LegVector q_rad = robot::solve_leg(model, leg, foot_B).q_rad;
-    deepest_m = greater(deepest_m, leg_depth_m(model, ground, R_OB, p_OB_m, leg, q_rad));
-  }
-  return deepest_m;
-}
-
 }  // namespace surefoot::planning

@@ -1,8 +1,7 @@
 // How deep a robot that stands like that would be in the ground: trunk and legs against the terrain
-// map. Frames: O, metres. Cost: 27 look-ups; deepest_contact_m() four solutions of a leg besides.
+// map. Frames: O, metres. Cost: nine look-ups for the trunk, three a leg.
 #pragma once
 
-#include "core/planning/stance.h"
 #include "core/robot/kinematics.h"
 #include "core/robot/robot_model.h"
 #include "core/terrain/terrain_map.h"
@@ -26,9 +25,5 @@ double trunk_depth_m(const robot::RobotModel& model, const PlanningGround& groun
 double leg_depth_m(const robot::RobotModel& model, const PlanningGround& ground,
                    const Matrix3& R_OB, const Vector3& p_OB_m, std::size_t leg,
                    const robot::LegVector& q_rad);
-
-// Of all of them, 0: none is in the ground. Legs that do not reach their feet count as stretched.
-double deepest_contact_m(const robot::RobotModel& model, const PlanningGround& ground,
-                         const Matrix3& R_OB, const Vector3& p_OB_m, const Feet& feet_O_m);
 
 }  // namespace surefoot::planning

@@ -29,6 +29,18 @@ std::unique_ptr<terrain::TerrainMap> blocks(Random& random) {
   });
 }
 
+// Of trunk and legs together; 0: none is in the ground.
+double deepest_contact_m(const robot::RobotModel& model, const PlanningGround& ground,
+                         const Matrix3& R_OB, const Vector3& p_OB_m, const Feet& feet_O_m) {
+  double deepest_m = std::max(0.0, trunk_depth_m(model, ground, R_OB, p_OB_m));
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
+    const Vector3 foot_B = R_OB.transpose() * (feet_O_m[leg] - p_OB_m);
+    const robot::LegVector q_rad = robot::solve_leg(model, leg, foot_B).q_rad;
+    deepest_m = std::max(deepest_m, leg_depth_m(model, ground, R_OB, p_OB_m, leg, q_rad));
+  }
+  return deepest_m;
+}
+
 struct Placed {
   Matrix3 R_OB;
   Vector3 p_OB_m;
