@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -22,6 +23,8 @@ namespace {
 // Of the generator's 0.14 m: the boards a robot is sent over are as high as this, or half of it.
 constexpr double kHighest = 0.86;
 constexpr double kLow = 0.43;
+constexpr auto kColumns = static_cast<std::int32_t>(terrain::kModelColumns);
+constexpr auto kRows = static_cast<std::int32_t>(terrain::kModelRows);
 constexpr int kBodies = 200;
 constexpr double kNoise_m = 0.002;  // of heights and ceilings: a prior for what cameras see
 
@@ -38,16 +41,16 @@ ScanOptions scan_options(const Config& config) {
   return options;
 }
 
+int cell_mm_of(const Config& config) {
+  return static_cast<int>(std::lround(1e3 * config.autonomy.mapping.cell_size_m));
+}
+
 std::unique_ptr<ScannedTerrain> scanned(const LearnTerrainOptions& options, const Config& config,
                                         std::uint64_t seed) {
   FineTerrain terrain = rock_terrain(options.cache, kBodies, seed);
   const double scale = seed % 2 == options.first_seed % 2 ? kHighest : kLow;
   for (float& z_m : terrain.z_m) z_m *= static_cast<float>(scale);
-  const auto cell_mm = static_cast<int>(std::lround(1e3 * config.autonomy.mapping.cell_size_m));
-  auto out = std::make_unique<ScannedTerrain>();
-  to_grid(terrain, scan_terrain(terrain, scan_options(config)), cell_mm, kNoise_m, seed, out->seen);
-  true_grid(terrain, cell_mm, out->truth);
-  return out;
+  return scan(terrain, cell_mm_of(config), kNoise_m, seed, scan_options(config));
 }
 
 std::string joined(const auto& values, const char* form) {
@@ -67,9 +70,9 @@ std::string model_text(const LearnTerrainOptions& options, const ScannedTerrain&
       "from, and the\n# prior of unseen ground (core/terrain/README.md).\n"
       "cell_m: {}\nseed: {}\nrows:\n",
       options.robot, options.first_seed, options.last_seed, prior.cell_m, options.first_seed);
-  for (std::int32_t row = 0; row < std::min<std::int32_t>(piece.truth.rows, 100); ++row) {
+  for (std::int32_t row = 0; row < std::min(piece.truth.rows, kRows); ++row) {
     std::vector<double> heights;
-    for (std::int32_t column = 0; column < 100; ++column) {
+    for (std::int32_t column = 0; column < kColumns; ++column) {
       heights.push_back(static_cast<double>(piece.truth.value_m[piece.truth.index(column, row)]));
     }
     text += fmt::format("  - heights_m: [{}]\n", joined(heights, "{:.4f}"));
@@ -108,10 +111,9 @@ int learn(const LearnTerrainOptions& options, const Config& config) {
     pieces.push_back(scanned(options, config, seed));
     library.push_back(pieces.back().get());
   }
-  const auto cell_mm = static_cast<int>(std::lround(1e3 * config.autonomy.mapping.cell_size_m));
-  const FillMaterial material = make_material(library, cell_mm);
+  const FillMaterial material = make_material(library, cell_mm_of(config));
   if (material.prior.radius != terrain::kModelPriorRadius || material.prior.stride != 1 ||
-      library.front()->truth.columns < 100) {
+      library.front()->truth.columns < kColumns) {
     std::fputs("learn terrain: cells of this size do not fit a model\n", stderr);
     return 3;
   }

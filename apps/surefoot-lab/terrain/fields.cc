@@ -163,9 +163,9 @@ FineTerrain rock_terrain(const std::filesystem::path& cache, int bodies, std::ui
 }
 
 std::unique_ptr<ScannedTerrain> scan(const FineTerrain& terrain, int cell_mm, double noise_m,
-                                     std::uint64_t seed) {
+                                     std::uint64_t seed, const ScanOptions& options) {
   auto out = std::make_unique<ScannedTerrain>();
-  const FineScan seen = scan_terrain(terrain, {});
+  const FineScan seen = scan_terrain(terrain, options);
   to_grid(terrain, seen, cell_mm, noise_m, seed, out->seen);
   true_grid(terrain, cell_mm, out->truth);
   return out;
