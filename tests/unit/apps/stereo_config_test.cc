@@ -2,42 +2,25 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <sstream>
 
 #include "apps/common/config_root.h"
+#include "tests/support/config_file.h"
 
 namespace surefoot::apps {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::replaced;
 
-const fs::path kFolder = fs::path(SUREFOOT_SOURCE_DIR) / "config";
-
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  if (at != std::string::npos) text.replace(at, from.size(), to);
-  return text;
-}
+const fs::path kFolder = tests::config_folder();
 
 class StereoConfig : public testing::Test {
  protected:
-  ~StereoConfig() override { fs::remove_all(folder_); }
-
   // Issues of LittleDog's file with this calibration.
   std::string issues_with(const std::string& calibration, std::vector<std::string> sets = {}) {
-    fs::create_directories(folder_);
-    std::ofstream(folder_ / "pair.yaml") << calibration;
-    sets.push_back("robot.stereo_camera.calibration=" + (folder_ / "pair.yaml").string());
+    sets.push_back("robot.stereo_camera.calibration=" +
+                   folder_.write("pair.yaml", calibration).string());
     RunRequest request;
     request.robot = "littledog";
     request.sets = sets;
@@ -49,13 +32,11 @@ class StereoConfig : public testing::Test {
     return issues_with(replaced(good_, from, to));
   }
 
-  const std::string good_ = text_of(kFolder / "cameras/littledog_stereo.yaml");
+  const std::string good_ = tests::text_of(kFolder / "cameras/littledog_stereo.yaml");
   Config config_;
 
  private:
-  fs::path folder_ =
-      fs::temp_directory_path() / (std::string("surefoot_stereo_") +
-                                   testing::UnitTest::GetInstance()->current_test_info()->name());
+  tests::ScratchFolder folder_;
 };
 
 TEST_F(StereoConfig, ReadsWhatOpenCvWrites) {

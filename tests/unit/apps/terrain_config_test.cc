@@ -3,29 +3,20 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "apps/common/config_root.h"
+#include "tests/support/config_file.h"
 
 namespace surefoot::apps {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::replaced;
 
-const fs::path kFolder = fs::path(SUREFOOT_SOURCE_DIR) / "config";
-
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
+const fs::path kFolder = tests::config_folder();
 
 class TerrainModelFile : public testing::Test {
  protected:
-  ~TerrainModelFile() override { fs::remove_all(folder_); }
-
   // Issues of LittleDog's file with this name of a model.
   ConfigIssues issues_of(const std::string& name) {
     RunRequest request;
@@ -37,26 +28,18 @@ class TerrainModelFile : public testing::Test {
   }
   // With `from` of the model's own file replaced.
   ConfigIssues edited(const std::string& from, const std::string& to) {
-    std::string text = good_;
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    if (at != std::string::npos) text.replace(at, from.size(), to);
-    fs::create_directories(folder_);
-    std::ofstream(folder_ / "rocks.yaml") << text;
-    return issues_of((folder_ / "rocks.yaml").string());
+    return issues_of(folder_.write("rocks.yaml", replaced(good_, from, to)).string());
   }
   int line_of(const std::string& text) const {
     const auto at = static_cast<std::ptrdiff_t>(good_.find(text));
     return 1 + static_cast<int>(std::count(good_.begin(), good_.begin() + at, '\n'));
   }
 
-  const std::string good_ = text_of(kFolder / "terrain/rocks_1cm.yaml");
+  const std::string good_ = tests::text_of(kFolder / "terrain/rocks_1cm.yaml");
   Config config_;
 
  private:
-  fs::path folder_ =
-      fs::temp_directory_path() / (std::string("surefoot_terrain_") +
-                                   testing::UnitTest::GetInstance()->current_test_info()->name());
+  tests::ScratchFolder folder_;
 };
 
 TEST_F(TerrainModelFile, TakesTheNamesPlace) {
