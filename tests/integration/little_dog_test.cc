@@ -30,5 +30,25 @@ TEST(LittleDog, CrossesLowBlocksOneLegAtATimeAndReplays) {
   EXPECT_EQ(replay.code, 0) << replay.out << replay.error;
 }
 
+// The README's board of slabs, on two of its twenty seeds.
+TEST(LittleDog, CrossesABoardOfSlabs) {
+  for (const char* seed : {"5", "20"}) {
+    const Scratch scratch;
+    const ProgramResult result = run_program(
+        "surefoot run --robot littledog --world rocks:flat --mission cross --record off "
+        "--report off --quiet --seed " +
+        std::string(seed) + " --out " + scratch.text("run"));
+    ASSERT_EQ(result.code, 0) << result.out << result.error;
+    const nlohmann::json summary = read_json(scratch.path("run") / "summary.json");
+    EXPECT_EQ(summary["outcome"], "goal") << summary["reason"];
+    EXPECT_GE(summary["mean_speed_m_s"].get<double>(), 0.05);
+    EXPECT_LE(summary["map"]["rmse_m"].get<double>(), 0.003);
+    EXPECT_GE(summary["localisation"]["registered"], 80);
+    EXPECT_GE(summary["fill"]["maps"], 80);
+    EXPECT_EQ(summary["memory"]["heap_calls_after_start"], 0);
+    EXPECT_EQ(summary["memory"]["page_faults_after_start"], 0);
+  }
+}
+
 }  // namespace
 }  // namespace surefoot
