@@ -64,6 +64,17 @@ Status check(const MapWindow& window, const FootholdQuery& query) {
   return in_range ? Status::kOk : Status::kOutOfRange;
 }
 
+// There must be a height.
+double ground_under_foot_m(const MapWindow& window, CellIndex centre) {
+  double sum = 0;
+  int count = 0;
+  for_cells_under_foot(window, centre, [&](CellIndex, const WindowCell& cell) {
+    sum += static_cast<double>(cell.height_m);
+    ++count;
+  });
+  return sum / count;
+}
+
 bool reachable(const FootholdQuery& query, double x, double y, double z) {
   if (!(z >= query.min_z_O_m && z <= query.max_z_O_m)) return false;
   if (!(query.reach_m > 0)) return true;
@@ -72,18 +83,6 @@ bool reachable(const FootholdQuery& query, double x, double y, double z) {
 }
 
 }  // namespace
-
-double ground_under_foot_m(const MapWindow& window, CellIndex centre) {
-  double sum = 0;
-  int count = 0;
-  for (std::int32_t i = 0; i < 9; ++i) {
-    const WindowCell* cell = window.find(centre + CellIndex{i % 3 - 1, i / 3 - 1});
-    if (cell == nullptr || !cell->has_height()) continue;
-    sum += static_cast<double>(cell->height_m);
-    ++count;
-  }
-  return sum / count;
-}
 
 Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& query) {
   const Status status = check(window, query);

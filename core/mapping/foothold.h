@@ -46,9 +46,17 @@ struct Foothold {
 // window.
 Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& query);
 
-// Mean height of the cells with height of the 3 x 3 around a cell that has one: less noise than one
-// cell, and over a steppable cell no step.
-double ground_under_foot_m(const MapWindow& window, CellIndex centre);
+// What is under a foot: calls visit(index, cell) for the cells with height of the 3 x 3 around one.
+// The ground's height there is their mean: less noise than one cell, and over a steppable cell no
+// step.
+template <class Visit>
+void for_cells_under_foot(const MapWindow& window, CellIndex centre, Visit&& visit) {
+  for (std::int32_t i = 0; i < 9; ++i) {
+    const CellIndex index = centre + CellIndex{i % 3 - 1, i / 3 - 1};
+    const WindowCell* cell = window.find(index);
+    if (cell != nullptr && cell->has_height()) visit(index, *cell);
+  }
+}
 
 // Height of the ground under a foot at a place around which the ground bears feet everywhere: the
 // mean as in Foothold::z_O_m. Errors as MapWindow::locate; kNotFound: not steppable, or something

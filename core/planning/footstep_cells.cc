@@ -42,18 +42,18 @@ void FootstepCells::rate(FootstepCell& cell) const {
   if (middle == nullptr || !middle->has_height()) return;
   const double terrain = static_cast<double>(map_->cost[ground.place(cell.index)]);
   if (!(terrain <= config_.max_cost)) return;
+  double height_m = 0;
   double spread_m = 0;
   int known = 0;
-  for (std::int32_t i = 0; i < 9; ++i) {
-    const mapping::CellIndex at = cell.index + mapping::CellIndex{i % 3 - 1, i / 3 - 1};
-    const mapping::WindowCell* around = ground.find(at);
-    if (around == nullptr || !around->has_height()) continue;
-    spread_m += static_cast<double>(map_->spread_m[ground.place(at)]);
-    ++known;
-  }
+  mapping::for_cells_under_foot(ground, cell.index,
+                                [&](mapping::CellIndex at, const mapping::WindowCell& under) {
+                                  height_m += static_cast<double>(under.height_m);
+                                  spread_m += static_cast<double>(map_->spread_m[ground.place(at)]);
+                                  ++known;
+                                });
   cell.usable = true;
   cell.terrain = terrain;
-  cell.height_m = mapping::ground_under_foot_m(ground, cell.index);
+  cell.height_m = height_m / known;  // the middle one has a height
   const Edges around = edges(cell.index, cell.height_m);
   cell.cost_m = config_.terrain_weight_m * terrain + config_.spread_weight * (spread_m / known) +
                 config_.wall_weight * around.wall_m + config_.drop_weight * around.drop_m;
