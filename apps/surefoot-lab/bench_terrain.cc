@@ -19,31 +19,12 @@ namespace {
 
 constexpr int kRounds = 15;
 constexpr std::int32_t kSide = 100;
-constexpr std::int32_t kUnseen = 3000;
 constexpr int kCell_mm = 10;
 constexpr std::int64_t kSlice = 10'000;  // units of work per call
 constexpr double kMaxTotal_ms = 50;
 constexpr double kMaxSlice_ms = 2;
 
 double processor_ms() { return 1e-3 * processor_us(); }
-
-// Shadows of 6 x 10 cells, evenly spread.
-void make_window(terrain::TerrainGrid& grid) {
-  const std::vector<float> heights = tests::rough_heights(1, kSide, kSide);
-  (void)grid.reset(kSide, kSide, 1e-3 * kCell_mm);
-  std::int32_t unseen = 0;
-  for (std::int32_t row = 0; row < kSide; ++row) {
-    for (std::int32_t column = 0; column < kSide; ++column) {
-      const std::size_t i = grid.index(column, row);
-      if (column % 20 < 6 && unseen < kUnseen) {
-        grid.bound(i, heights[i] + 0.02f);
-        ++unseen;
-      } else {
-        grid.measure(i, heights[i]);
-      }
-    }
-  }
-}
 
 struct Times {
   std::vector<double> total_ms;
@@ -59,7 +40,7 @@ int bench_terrain() {
   const auto library = std::make_unique<terrain::PatchLibrary>();
   const auto filler = std::make_unique<terrain::TerrainFiller>();
   const auto map = std::make_unique<terrain::CostMap>();
-  make_window(*grid);
+  tests::make_shadowed_window(1e-3 * kCell_mm, *grid);
   const terrain::FillConfig config = improved_config(kCell_mm);
   tests::fill_library(10, kSide, kSide, 1e-3 * kCell_mm, config.patch_cells, *library);
   const terrain::HeightPrior prior =

@@ -63,6 +63,27 @@ inline void make_scene(std::uint64_t seed, std::int32_t columns, std::int32_t ro
   for (int k = 0; k < columns * rows / 400 + 1; ++k) cut(3, 2, terrain::Knowledge::kUnknown);
 }
 
+inline constexpr std::int32_t kWindowUnseen = 3000;
+
+// A window of 100 x 100 cells, all seen but kWindowUnseen in shadows six cells long.
+inline void make_shadowed_window(double cell_m, terrain::TerrainGrid& grid) {
+  constexpr std::int32_t kSide = 100;
+  const std::vector<float> heights = rough_heights(1, kSide, kSide);
+  (void)grid.reset(kSide, kSide, cell_m);
+  std::int32_t unseen = 0;
+  for (std::int32_t row = 0; row < kSide; ++row) {
+    for (std::int32_t column = 0; column < kSide; ++column) {
+      const std::size_t i = grid.index(column, row);
+      if (column % 20 < 6 && unseen < kWindowUnseen) {
+        grid.bound(i, heights[i] + 0.02f);
+        ++unseen;
+      } else {
+        grid.measure(i, heights[i]);
+      }
+    }
+  }
+}
+
 inline void fill_library(std::int32_t pieces, std::int32_t columns, std::int32_t rows,
                          double cell_m, std::int32_t patch_cells, terrain::PatchLibrary& library) {
   (void)library.reset(cell_m, patch_cells);

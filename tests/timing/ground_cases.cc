@@ -178,6 +178,39 @@ class TerrainLast final : public TerrainSlice {
   int slices_before() override { return slices_with_cheap_draws() - 1; }
 };
 
+// All slices of filling a window with 3000 unseen cells.
+class TerrainWindow final : public WorkCase {
+ public:
+  bool prepare(std::size_t round) override {
+    if (round > 0) return false;
+    const apps::Config config = little_dog();
+    config_ = config.autonomy.terrain;
+    tests::make_shadowed_window(config.autonomy.mapping.cell_size_m, *grid_);
+    const auto scratch = std::make_unique<terrain::ModelHeights>();
+    SUREFOOT_ASSERT(ok(
+        terrain::make_library(config_.model, config_.synthesis.patch_cells, *scratch, *library_)));
+    prior_ = terrain::make_prior(config_.model);
+    filler_->touch();
+    return ok(filler_->configure(config_.synthesis));
+  }
+  void run() override {
+    if (!ok(filler_->start(*grid_, *library_, prior_, 0))) return;
+    for (bool done = false; !done; ++slices_) done = filler_->advance(config_.fill_work);
+  }
+  bool did_the_work() override {
+    return filler_->counts().unseen == tests::kWindowUnseen &&
+           slices_ >= filler_->total_work() / (config_.fill_work + filler_->cell_work());
+  }
+
+ private:
+  autonomy::TerrainConfig config_;
+  terrain::HeightPrior prior_;
+  std::unique_ptr<terrain::TerrainGrid> grid_ = std::make_unique<terrain::TerrainGrid>();
+  std::unique_ptr<terrain::PatchLibrary> library_ = std::make_unique<terrain::PatchLibrary>();
+  std::unique_ptr<terrain::TerrainFiller> filler_ = std::make_unique<terrain::TerrainFiller>();
+  std::int64_t slices_ = 0;
+};
+
 template <class Case>
 std::unique_ptr<WorkCase> make() {
   return std::make_unique<Case>();
@@ -189,6 +222,7 @@ const WorkEntry kGroundCases[] = {
     {"localisation_task", "a picture registered with 16 scans", make<Localisation>},
     {"terrain_load", "the terrain task's first slice: a window is taken", make<TerrainLoad>},
     {"terrain_fill", "a slice of filling", make<TerrainFill>},
+    {"terrain_window", "all slices of filling 3000 unseen cells", make<TerrainWindow>},
     {"terrain_rate", "a slice of rating", make<TerrainRate>},
     {"terrain_last", "the last slice: rating, the map is put together and published",
      make<TerrainLast>},

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/base/hash.h"
@@ -234,6 +235,32 @@ TEST(Fill, ResultDoesNotDependOnHowTheWorkWasSpread) {
     EXPECT_LE(calls, bench.filler->total_work() / work + 1);
     EXPECT_GE(calls, bench.filler->total_work() / (work + bench.filler->cell_work()) - 1);
   }
+}
+
+// A robot's window as it fills it: by ticks of 10,000 units, of fewer, or of another number each.
+TEST(Fill, AWindowInTicksHasTheBitsOfTheWholeAtOnce) {
+  FillConfig config = tests::some_fill();
+  config.patch_cells = 3;
+  config.guide = 3;
+  Bench bench;
+  ASSERT_EQ(bench.start(config, 1), Status::kOk);
+  tests::make_shadowed_window(kCell_m, *bench.grid);
+  const auto fill = [&](auto&& work_of) {
+    EXPECT_EQ(bench.filler->start(*bench.grid, *bench.library, bench.prior, 0), Status::kOk);
+    std::int64_t ticks = 0;
+    for (bool done = false; !done; ++ticks) done = bench.filler->advance(work_of(ticks));
+    EXPECT_EQ(bench.filler->counts().unseen, tests::kWindowUnseen);
+    return std::pair{ticks, bench.digest()};
+  };
+  const auto whole = fill([](std::int64_t) { return std::int64_t{1} << 40; });
+  EXPECT_EQ(whole.first, 1);
+  const auto ticks = fill([](std::int64_t) { return std::int64_t{10'000}; });
+  EXPECT_GT(ticks.first, 30);
+  EXPECT_EQ(ticks.second, whole.second);
+  EXPECT_EQ(fill([](std::int64_t) { return std::int64_t{700}; }).second, whole.second);
+  Random random(6);
+  const auto uneven = fill([&](std::int64_t) { return std::int64_t{1 + random.below(20'000)}; });
+  EXPECT_EQ(uneven.second, whole.second);
 }
 
 TEST(Fill, StartsAfreshWhateverWasDoneBefore) {
