@@ -17,6 +17,7 @@
 #include "apps/surefoot-lab/terrain/fields.h"
 #include "apps/surefoot-lab/terrain/fill_methods.h"
 #include "apps/surefoot-lab/terrain/fill_pictures.h"
+#include "apps/surefoot-lab/terrain/improved_choice.h"
 
 namespace surefoot::apps {
 namespace {
@@ -185,7 +186,22 @@ void print_table(const MethodScores& scores) {
   }
 }
 
+// What was chosen for each library.
+nlohmann::ordered_json to_json(const std::vector<ImprovedChoice>& improved) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const ImprovedChoice& choice : improved) {
+    json.push_back({{"patch_cells", choice.settings.patch_cells},
+                    {"samples", choice.settings.samples},
+                    {"draws", choice.settings.draws},
+                    {"guide", choice.settings.guide},
+                    {"prior_log_ratio", choice.log_ratio},
+                    {"prior_log_ratio_error", choice.error}});
+  }
+  return json;
+}
+
 nlohmann::ordered_json report(const TerrainFillOptions& options, const Scenes& tests,
+                              const std::vector<ImprovedChoice>& improved,
                               const MethodScores& scores) {
   nlohmann::ordered_json json;
   json["schema"] = 1;
@@ -198,6 +214,7 @@ nlohmann::ordered_json report(const TerrainFillOptions& options, const Scenes& t
     json["scale"] = options.scale;
   }
   json["cells"] = shares(tests);
+  json["improved_settings"] = to_json(improved);
   for (std::size_t m = 0; m < kFillMethods; ++m) {
     json["methods"][kFillMethodNames[m]] = to_json(scores[m]);
   }
@@ -243,16 +260,19 @@ bool write(const std::filesystem::path& out, const nlohmann::ordered_json& json,
          text.good();
 }
 
-FillMaterial learn(const Scenes& library, int cell_mm) {
+FillMaterial learn(const Scenes& library, int cell_mm, std::vector<ImprovedChoice>& improved) {
   std::vector<const ScannedTerrain*> pieces;
   for (const auto& piece : library) pieces.push_back(piece.get());
-  return make_material(pieces, cell_mm);
+  improved.push_back(choose_improved(pieces, cell_mm));
+  return make_material(pieces, cell_mm, improved.back().settings);
 }
 
 int finish(const TerrainFillOptions& options, const Scenes& tests, const MethodScores& scores,
-           const FillMaterial& material) {
-  const nlohmann::ordered_json json = report(options, tests, scores);
+           const std::vector<ImprovedChoice>& improved, const FillMaterial& material) {
+  const nlohmann::ordered_json json = report(options, tests, improved, scores);
   print_table(scores);
+  std::fputs(fmt::format("improved_settings {}\n", json["improved_settings"].dump()).c_str(),
+             stdout);
   print_comparison(json, tests.size());
   FillWorker worker(material);
   const std::filesystem::path out =
@@ -273,16 +293,18 @@ int run_rock_fields(const TerrainFillOptions& options, int cell_mm) {
   std::vector<std::uint64_t> all = library_seeds;
   all.insert(all.end(), test_seeds.begin(), test_seeds.end());
   if (!prepare_fields(options.cache, options.bodies, all, options.jobs)) return 3;
-  const FillMaterial material = learn(scan_all(options, library_seeds, cell_mm), cell_mm);
+  std::vector<ImprovedChoice> improved;
+  const FillMaterial material = learn(scan_all(options, library_seeds, cell_mm), cell_mm, improved);
   const Scenes tests = scan_all(options, test_seeds, cell_mm);
   const MethodScores scores = score_all(tests, material, options.jobs);
-  return finish(options, tests, scores, material);
+  return finish(options, tests, scores, improved, material);
 }
 
 int run_recorded(const TerrainFillOptions& options, int cell_mm) {
   const std::vector<FineTerrain> pieces = recorded_terrain(options.terrain, options.scale);
   Scenes tests;
   MethodScores scores;
+  std::vector<ImprovedChoice> improved;
   for (std::size_t fold = 0; fold < 2; ++fold) {
     Scenes library;
     Scenes half;
@@ -290,13 +312,13 @@ int run_recorded(const TerrainFillOptions& options, int cell_mm) {
       Scenes& to = k / 2 == fold ? library : half;
       to.push_back(scan(pieces[k], cell_mm, options.noise_m, k));
     }
-    const FillMaterial material = learn(library, cell_mm);
+    const FillMaterial material = learn(library, cell_mm, improved);
     const MethodScores of_half = score_all(half, material, options.jobs);
     for (std::size_t m = 0; m < kFillMethods; ++m) {
       scores[m].insert(scores[m].end(), of_half[m].begin(), of_half[m].end());
     }
     for (auto& scene : half) tests.push_back(std::move(scene));
-    if (fold == 1) return finish(options, tests, scores, material);
+    if (fold == 1) return finish(options, tests, scores, improved, material);
   }
   return 0;
 }

@@ -111,7 +111,8 @@ int learn(const LearnTerrainOptions& options, const Config& config) {
     pieces.push_back(scanned(options, config, seed));
     library.push_back(pieces.back().get());
   }
-  const FillMaterial material = make_material(library, cell_mm_of(config));
+  const int cell_mm = cell_mm_of(config);
+  const FillMaterial material = make_material(library, cell_mm, improved_config(cell_mm));
   if (material.prior.radius != terrain::kModelPriorRadius || material.prior.stride != 1 ||
       library.front()->truth.columns < kColumns) {
     std::fputs("learn terrain: cells of this size do not fit a model\n", stderr);

@@ -171,6 +171,13 @@ FillConfig improved_config(int cell_mm) {
   return config;
 }
 
+FillConfig drawn_config(int cell_mm) {
+  FillConfig config = paper_config(cell_mm);
+  config.samples = cell_mm < kFineCell_mm ? 100 : 300;
+  config.draws = 8;
+  return config;
+}
+
 PriorOptions prior_options(int cell_mm) {
   PriorOptions options;
   options.stride = cell_mm < kFineCell_mm ? 2 : 1;
@@ -188,7 +195,8 @@ CostConfig cost_config(int cell_mm) {
   return config;
 }
 
-FillMaterial make_material(const std::vector<const ScannedTerrain*>& library, int cell_mm) {
+FillMaterial make_material(const std::vector<const ScannedTerrain*>& library, int cell_mm,
+                           const FillConfig& improved) {
   if (library.empty()) throw std::runtime_error("the library is empty");
   FillMaterial material;
   material.cell_mm = cell_mm;
@@ -197,7 +205,8 @@ FillMaterial make_material(const std::vector<const ScannedTerrain*>& library, in
   material.prior = train_prior(library, prior_options(cell_mm));
   if (!material.prior.exists()) throw std::runtime_error("the library has no unseen cells");
   material.wide = make_library(library, paper_config(cell_mm).patch_cells);
-  material.small = make_library(library, improved_config(cell_mm).patch_cells);
+  material.improved = improved;
+  material.improving = make_library(library, improved.patch_cells);
   return material;
 }
 
@@ -233,7 +242,7 @@ Completion FillWorker::complete(FillMethod method, const ScannedTerrain& scene) 
       break;
     case FillMethod::kPaper: synthesise(paper_config(cell), *material_.wide, grid, out); break;
     case FillMethod::kImproved:
-      synthesise(improved_config(cell), *material_.small, grid, out);
+      synthesise(material_.improved, *material_.improving, grid, out);
       break;
     case FillMethod::kUnconstrained:
       synthesise(unconstrained_config(cell), *material_.wide, grid, out);

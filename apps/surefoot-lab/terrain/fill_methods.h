@@ -46,6 +46,8 @@ inline constexpr std::size_t kFillMethods = kFillMethodNames.size();
 terrain::FillConfig literal_config(int cell_mm);
 terrain::FillConfig paper_config(int cell_mm);
 terrain::FillConfig improved_config(int cell_mm);
+// The paper's patches in several draws: the improved method where there is no good prior.
+terrain::FillConfig drawn_config(int cell_mm);
 terrain::FillConfig unconstrained_config(int cell_mm);
 PriorOptions prior_options(int cell_mm);
 // All features weigh the same; the scales are left open.
@@ -56,13 +58,15 @@ struct FillMaterial {
   int cell_mm = 10;
   terrain::CostConfig cost;
   terrain::HeightPrior prior;
-  std::unique_ptr<terrain::PatchLibrary> wide;   // patches of the paper's methods
-  std::unique_ptr<terrain::PatchLibrary> small;  // of the improved one
+  terrain::FillConfig improved;                      // settings of the improved method
+  std::unique_ptr<terrain::PatchLibrary> wide;       // patches of the paper's methods
+  std::unique_ptr<terrain::PatchLibrary> improving;  // of the improved one
 };
 
 // Scales of the cost: what 95 of 100 cells of the library stay below. Throws std::runtime_error
 // for a library that core's cannot hold.
-FillMaterial make_material(const std::vector<const ScannedTerrain*>& library, int cell_mm);
+FillMaterial make_material(const std::vector<const ScannedTerrain*>& library, int cell_mm,
+                           const terrain::FillConfig& improved);
 
 // A completed terrain: the draws whose costs are averaged (one for most methods), their mean.
 struct Completion {

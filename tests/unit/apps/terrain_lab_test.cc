@@ -6,13 +6,16 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <stdexcept>
 
 #include "apps/common/statistics.h"
 #include "apps/surefoot-lab/terrain/fields.h"
 #include "apps/surefoot-lab/terrain/fill_methods.h"
 #include "apps/surefoot-lab/terrain/fine_scan.h"
+#include "apps/surefoot-lab/terrain/improved_choice.h"
 #include "apps/surefoot-lab/terrain/simple_fills.h"
 #include "sim_hal/simulator_error.h"
+#include "tests/support/terrain_parts.h"
 
 namespace surefoot::apps {
 namespace {
@@ -168,6 +171,131 @@ TEST(PriorTraining, FindsALinearLaw) {
   EXPECT_NEAR(prior.weights[5], 0.5 * 0.03, 5e-4);
   EXPECT_NEAR(prior.weights[3], 0, 5e-4);
   EXPECT_NEAR(prior.weights[2 * 9], -0.04, 1e-3);
+}
+
+// Blocks of centimetres, each of millimetre samples.
+FineTerrain fine_blocks(std::uint64_t seed) {
+  const std::vector<float> heights = tests::rough_heights(seed, 60, 40);
+  FineTerrain terrain;
+  terrain.columns = 600;
+  terrain.rows = 400;
+  for (std::size_t i = 0; i < 600 * 400; ++i) {
+    terrain.z_m.push_back(heights[i / 600 / 10 * 60 + i % 600 / 10]);
+  }
+  return terrain;
+}
+
+// Every pose on its own is a witness: what it looked over may not be filled above its rays.
+TEST(FillMethods, NoFillStandsAboveWhatAnyPoseLookedOver) {
+  const FineTerrain terrain = fine_blocks(5);
+  ScanOptions options;
+  options.columns = 160;
+  options.rows = 120;
+  options.step_m = 0.1;
+  options.last_x_m = 0.2;
+  const auto scene = scan(terrain, 10, 0, 1, options);
+  const FillMaterial material = make_material({scene.get()}, 10, improved_config(10));
+  FillWorker worker(material);
+  std::vector<FineScan> of_pose;
+  for (double x_m = options.first_x_m; x_m < options.last_x_m + 1e-6; x_m += options.step_m) {
+    ScanOptions one = options;
+    one.first_x_m = one.last_x_m = x_m;
+    of_pose.push_back(scan_terrain(terrain, one));
+  }
+  ASSERT_EQ(of_pose.size(), 7u);
+  for (const FillMethod method : {FillMethod::kPaper, FillMethod::kImproved,
+                                  FillMethod::kConstraintsAsHeights, FillMethod::kClippedInpainting,
+                                  FillMethod::kMinimumSpread, FillMethod::kSmoothedMinimumSpread}) {
+    const Completion completion = worker.complete(method, *scene);
+    int filled = 0, looked_over = 0;
+    for (std::int32_t cell = 0; cell < scene->seen.size(); ++cell) {
+      const auto i = static_cast<std::size_t>(cell);
+      const float height_m = completion.mean[i];
+      if (scene->seen.knowledge[i] == Knowledge::kMeasured) {
+        ASSERT_EQ(completion.state[i], terrain::FilledState::kMeasured);
+        ASSERT_EQ(height_m, scene->seen.value_m[i]);
+      } else if (scene->seen.knowledge[i] == Knowledge::kUnknown) {
+        ASSERT_EQ(completion.state[i], terrain::FilledState::kUnknown);
+      } else {
+        ++filled;
+        const std::size_t sample = terrain.index(10 * (cell % 60) + 5, 10 * (cell / 60) + 5);
+        for (const FineScan& pose : of_pose) {
+          looked_over += pose.ceiling_m[sample] < kNoSight_m ? 1 : 0;
+          ASSERT_LE(height_m, pose.ceiling_m[sample]) << static_cast<int>(method) << " " << i;
+          for (const Heights& draw : completion.draws) ASSERT_LE(draw[i], pose.ceiling_m[sample]);
+        }
+      }
+    }
+    EXPECT_GT(filled, 200);
+    EXPECT_GT(looked_over, 2 * filled);
+  }
+}
+
+// Rough ground whose unseen cells lie `drop_m` below their ceilings, more or less by `scatter_m`.
+std::unique_ptr<ScannedTerrain> shadowed_ground(std::uint64_t seed, double drop_m,
+                                                double scatter_m) {
+  auto scene = std::make_unique<ScannedTerrain>();
+  (void)scene->seen.reset(60, 60, 0.01);
+  (void)scene->truth.reset(60, 60, 0.01);
+  const std::vector<float> heights = tests::rough_heights(seed, 60, 60);
+  Random random(seed, 8);
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    scene->truth.measure(i, heights[i]);
+    if (i % 60 % 15 < 9) {
+      scene->seen.measure(i, heights[i]);
+      continue;
+    }
+    const double gap_m = std::max(drop_m + scatter_m * random.normal(), 0.0);
+    scene->seen.bound(i, heights[i] + static_cast<float>(gap_m));
+  }
+  return scene;
+}
+
+ImprovedChoice choice_of(int pieces, double drop_m, double scatter_m) {
+  std::vector<std::unique_ptr<ScannedTerrain>> scenes;
+  std::vector<const ScannedTerrain*> library;
+  for (int k = 0; k < pieces; ++k) {
+    scenes.push_back(shadowed_ground(static_cast<std::uint64_t>(k + 1), drop_m, scatter_m));
+    library.push_back(scenes.back().get());
+  }
+  return choose_improved(library, 10);
+}
+
+TEST(ImprovedChoice, TakesThePriorWhereItKnowsTheGround) {
+  // A constant: all that there is to learn is learned from a handful of cells.
+  const ImprovedChoice choice = choice_of(2, 0.03, 0.0);
+  EXPECT_EQ(choice.settings.guide, improved_config(10).guide);
+  EXPECT_EQ(choice.settings.patch_cells, improved_config(10).patch_cells);
+  EXPECT_LT(choice.log_ratio, -choice.error);
+}
+
+TEST(ImprovedChoice, LeavesThePriorOutWhereItsRuleIsNone) {
+  // The ceilings are anywhere above the ground: on the other side they are elsewhere.
+  const ImprovedChoice choice = choice_of(1, 0.08, 0.06);
+  EXPECT_EQ(choice.settings.guide, 0);
+  EXPECT_EQ(choice.settings.draws, drawn_config(10).draws);
+  EXPECT_GT(choice.error, 0);
+}
+
+TEST(ImprovedChoice, NothingUnseenOnASideIsNoPrior) {
+  const auto scene = shadowed_ground(1, 0.03, 0);
+  for (std::size_t i = 0; i < 30 * 60; ++i) scene->seen.measure(i, scene->truth.value_m[i]);
+  const ImprovedChoice choice = choose_improved({scene.get()}, 10);
+  EXPECT_EQ(choice.settings.guide, 0);
+  EXPECT_EQ(choice.error, 0);
+}
+
+TEST(ImprovedChoice, ALibraryThatDoesNotFitIsRefusedWithItsSize) {
+  const auto scene = shadowed_ground(1, 0.03, 0);
+  const std::vector<const ScannedTerrain*> library(40, scene.get());  // 32 pieces fit
+  try {
+    (void)make_material(library, 10, improved_config(10));
+    FAIL() << "taken";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("library of 40 terrains"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_THROW((void)make_material({}, 10, improved_config(10)), std::runtime_error);
 }
 
 TEST(RecordedTerrain, IsScaledCutInTwoAndTurned) {
