@@ -212,6 +212,7 @@ nlohmann::ordered_json report(const TerrainFillOptions& options, const Scenes& t
   if (!options.terrain.empty()) {
     json["terrain"] = options.terrain.string();
     json["scale"] = options.scale;
+    json["gaps"] = options.bridge_gaps ? "bridged" : "unknown";
   }
   json["cells"] = shares(tests);
   json["improved_settings"] = to_json(improved);
@@ -311,6 +312,7 @@ int run_recorded(const TerrainFillOptions& options, int cell_mm) {
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       Scenes& to = k / 2 == fold ? library : half;
       to.push_back(scan(pieces[k], cell_mm, options.noise_m, k));
+      if (!options.bridge_gaps) forget_gaps(*to.back());
     }
     const FillMaterial material = learn(library, cell_mm, improved);
     const MethodScores of_half = score_all(half, material, options.jobs);

@@ -22,6 +22,7 @@ struct TerrainFillOptions {
   // way round; each is walked over in both directions.
   std::filesystem::path terrain;
   double scale = 0.25;        // of that grid
+  bool bridge_gaps = true;    // false: they stay unknown, as the scanner left them
   std::filesystem::path out;  // default: out/eval-terrain-fill
 };
 

@@ -105,6 +105,8 @@ CLI::App* add_eval_terrain_fill(CLI::App& eval, Arguments& arguments) {
   command->add_option("--scale", options.scale, "of the recorded grid")
       ->check(CLI::Range(0.001, 10.0))
       ->capture_default_str();
+  command->add_flag("!--gaps-unknown", options.bridge_gaps,
+                    "leaves the recorded grid's gaps unknown instead of bridging them");
   command->add_option("--cache", options.cache, "folder that keeps generated terrain")
       ->capture_default_str();
   command->add_option("--out", options.out, "folder for the results");

@@ -162,6 +162,15 @@ FineTerrain rock_terrain(const std::filesystem::path& cache, int bodies, std::ui
   return terrain;
 }
 
+void forget_gaps(ScannedTerrain& terrain) {
+  terrain.bridged = false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(terrain.seen.size()); ++i) {
+    if (terrain.truth.knowledge[i] == terrain::Knowledge::kMeasured) continue;
+    terrain.seen.knowledge[i] = terrain::Knowledge::kUnknown;
+    terrain.seen.value_m[i] = 0;
+  }
+}
+
 std::unique_ptr<ScannedTerrain> scan(const FineTerrain& terrain, int cell_mm, double noise_m,
                                      std::uint64_t seed, const ScanOptions& options) {
   auto out = std::make_unique<ScannedTerrain>();

@@ -25,6 +25,9 @@ FineTerrain rock_terrain(const std::filesystem::path& cache, int bodies, std::ui
 // 1 m of it along x and along y. Throws sim::SimulatorError: unreadable, or a half is under 0.3 m.
 std::vector<FineTerrain> recorded_terrain(const std::filesystem::path& file, double scale);
 
+// Takes what was invented out of what was seen.
+void forget_gaps(ScannedTerrain& terrain);
+
 // Scanned by the experiment's sensor, or as `options` say. noise_m as in to_grid().
 std::unique_ptr<ScannedTerrain> scan(const FineTerrain& terrain, int cell_mm, double noise_m,
                                      std::uint64_t seed, const ScanOptions& options = {});

@@ -310,7 +310,7 @@ FillScore FillWorker::score(FillMethod method, const ScannedTerrain& scene,
                             const Completion& completion) {
   const TerrainGrid& grid = scene.seen;
   Completion truth;
-  truth.state = states(scene.truth, true);
+  truth.state = states(scene.truth, scene.bridged);
   truth.draws.emplace_back(scene.truth.value_m.begin(),
                            scene.truth.value_m.begin() + scene.truth.size());
   const std::vector<double> true_cost = costs(scene, truth);

@@ -35,6 +35,7 @@ std::unique_ptr<ScannedTerrain> side_of(const ScannedTerrain& piece, std::size_t
   auto side = std::make_unique<ScannedTerrain>();
   side->seen = *rows_of(piece.seen, begin, rows);
   side->truth = *rows_of(piece.truth, begin, rows);
+  side->bridged = piece.bridged;
   return side;
 }
 

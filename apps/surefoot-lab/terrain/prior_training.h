@@ -14,6 +14,9 @@ namespace surefoot::apps {
 struct ScannedTerrain {
   terrain::TerrainGrid seen;
   terrain::TerrainGrid truth;
+  // false: nothing is known in gaps, neither to the fills nor where true costs are computed; the
+  // library's patches are bridged all the same, they must be whole.
+  bool bridged = true;
 };
 
 struct PriorOptions {

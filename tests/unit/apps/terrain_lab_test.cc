@@ -298,6 +298,29 @@ TEST(ImprovedChoice, ALibraryThatDoesNotFitIsRefusedWithItsSize) {
   EXPECT_THROW((void)make_material({}, 10, improved_config(10)), std::runtime_error);
 }
 
+TEST(RecordedTerrain, GapsCanBeForgotten) {
+  const auto scene = shadowed_ground(3, 0.03, 0);
+  (void)scene->truth.reset(60, 60, 0.01);
+  for (std::size_t i = 0; i < 3600; ++i) {
+    if (i % 7 == 0) {
+      scene->truth.bound(i, 0.01f);  // an invention
+    } else {
+      scene->truth.measure(i, 0.02f);
+    }
+  }
+  const TerrainGrid before = scene->seen;
+  forget_gaps(*scene);
+  EXPECT_FALSE(scene->bridged);
+  for (std::size_t i = 0; i < 3600; ++i) {
+    if (i % 7 == 0) {
+      ASSERT_EQ(scene->seen.knowledge[i], Knowledge::kUnknown);
+    } else {
+      ASSERT_EQ(scene->seen.knowledge[i], before.knowledge[i]);
+      ASSERT_EQ(scene->seen.value_m[i], before.value_m[i]);
+    }
+  }
+}
+
 TEST(RecordedTerrain, IsScaledCutInTwoAndTurned) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / "surefoot-recorded-terrain.asc";
