@@ -173,7 +173,7 @@ void TerrainFiller::sort_cells(double view_rad) {
 std::int64_t TerrainFiller::total_work() const {
   const std::int64_t smoothing =
       static_cast<std::int64_t>(config_.smoothing_sweeps) * config_.draws;
-  return counts_.unseen * (1 + cell_work() + smoothing + 1);
+  return counts_.unseen * (prior_work() + cell_work() + smoothing + 1);
 }
 
 bool TerrainFiller::advance(std::int64_t work) {
@@ -204,7 +204,10 @@ std::int64_t TerrainFiller::step() {
   const auto at = static_cast<std::size_t>(cursor_);
   std::int64_t work = 1;
   switch (phase_) {
-    case Phase::kPrior: learn_height(order_[at]); break;
+    case Phase::kPrior:
+      learn_height(order_[at]);
+      work = prior_work();
+      break;
     case Phase::kSynthesis:
       synthesise(order_[at]);
       work = cell_work();

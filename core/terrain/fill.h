@@ -56,6 +56,10 @@ struct FillCounts {
   std::int32_t no_patch = 0;   // cells with nothing known around: the prior or the ceiling
 };
 
+// A learned height gathers from all over the window: 0.5 us for 339 inputs, where a patch of 3 x 3
+// takes 24 ns.
+inline constexpr std::int64_t kPriorInputs_per_unit = 16;
+
 class TerrainFiller {
  public:
   // kInvalid: see validate(); nothing changed. Ends a fill under way.
@@ -73,14 +77,20 @@ class TerrainFiller {
   Status start(const TerrainGrid& grid, const PatchLibrary& library, const HeightPrior& prior,
                double view_rad);
 
-  // Works until at least `work` units are spent or all is done; overshoots by less than one cell's
-  // work (cell_work()). A unit is one patch compared, one learned height or one cell smoothed.
+  // Works until at least `work` units are spent or all is done; overshoots by less than one step,
+  // that is the larger of cell_work() and prior_work(). A unit is one patch compared, one cell
+  // smoothed or kPriorInputs_per_unit inputs of the prior.
   // True: done. Without a start(): true.
   bool advance(std::int64_t work);
   bool done() const { return phase_ == Phase::kDone || phase_ == Phase::kIdle; }
   // Units that the fill under way takes in all.
   std::int64_t total_work() const;
   std::int64_t cell_work() const { return 2 + config_.draws * (config_.samples + 1); }
+  // Of one learned height.
+  std::int64_t prior_work() const {
+    if (!prior_.exists()) return 1;
+    return 1 + static_cast<std::int64_t>(prior_.inputs()) / kPriorInputs_per_unit;
+  }
 
   // Valid once done() after a start() that was accepted.
   const FilledTerrain& result() const { return filled_; }

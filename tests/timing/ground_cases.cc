@@ -159,9 +159,13 @@ class TerrainLoad final : public TerrainSlice {
   int slices_before() override { return 0; }
 };
 
-// The first slice of filling is the prior's.
+// After the load the first slices are the prior's.
+class TerrainPrior final : public TerrainSlice {
+  int slices_before() override { return 1; }
+};
+
 class TerrainFill final : public TerrainSlice {
-  int slices_before() override { return 4; }
+  int slices_before() override { return 10; }
 };
 
 class TerrainRate final : public TerrainSlice {
@@ -221,7 +225,8 @@ std::unique_ptr<WorkCase> make() {
 const WorkEntry kGroundCases[] = {
     {"localisation_task", "a picture registered with 16 scans", make<Localisation>},
     {"terrain_load", "the terrain task's first slice: a window is taken", make<TerrainLoad>},
-    {"terrain_fill", "a slice of filling", make<TerrainFill>},
+    {"terrain_prior", "a slice of filling: learned heights", make<TerrainPrior>},
+    {"terrain_fill", "a slice of filling: patches", make<TerrainFill>},
     {"terrain_window", "all slices of filling 3000 unseen cells", make<TerrainWindow>},
     {"terrain_rate", "a slice of rating", make<TerrainRate>},
     {"terrain_last", "the last slice: rating, the map is put together and published",
