@@ -13,8 +13,9 @@ namespace {
 using terrain::TerrainGrid;
 using Pieces = std::vector<const ScannedTerrain*>;
 
-constexpr std::size_t kTried = 8;     // sides of a half that are filled, at most
-constexpr double kLeastError = 1e-9;  // a perfect fill is no division by zero
+constexpr std::size_t kManyPieces = 10;  // whole ones are held back then
+constexpr std::size_t kMostFills = 16;   // of all groups together
+constexpr double kLeastError = 1e-9;     // a perfect fill is no division by zero
 
 std::unique_ptr<TerrainGrid> rows_of(const TerrainGrid& grid, std::int32_t begin,
                                      std::int32_t rows) {
@@ -39,16 +40,44 @@ std::unique_ptr<ScannedTerrain> side_of(const ScannedTerrain& piece, std::size_t
   return side;
 }
 
-std::vector<FillScore> scores_of(const std::array<Pieces, 2>& halves, int cell_mm,
+// What is filled together, from what the other groups teach.
+struct Groups {
+  std::vector<std::unique_ptr<ScannedTerrain>> sides;
+  std::vector<Pieces> pieces;
+};
+
+Groups grouped(const Pieces& library) {
+  Groups groups;
+  if (library.size() >= kManyPieces) {
+    groups.pieces.resize(kManyPieces / 2);
+    for (std::size_t k = 0; k < library.size(); ++k) {
+      groups.pieces[k / 2 % groups.pieces.size()].push_back(library[k]);
+    }
+    return groups;
+  }
+  groups.pieces.resize(2);
+  for (std::size_t k = 0; k < library.size(); ++k) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      groups.sides.push_back(side_of(*library[k], side));
+      groups.pieces[(k + side) % 2].push_back(groups.sides.back().get());
+    }
+  }
+  return groups;
+}
+
+std::vector<FillScore> scores_of(const std::vector<Pieces>& groups, int cell_mm,
                                  const terrain::FillConfig& settings) {
   std::vector<FillScore> scores;
-  for (std::size_t half = 0; half < 2; ++half) {
-    const FillMaterial material = make_material(halves[1 - half], cell_mm, settings);
+  for (const Pieces& group : groups) {
+    Pieces others;
+    for (const Pieces& other : groups) {
+      if (&other != &group) others.insert(others.end(), other.begin(), other.end());
+    }
+    const FillMaterial material = make_material(others, cell_mm, settings);
     FillWorker worker(material);
-    for (std::size_t k = 0; k < std::min(halves[half].size(), kTried); ++k) {
-      const ScannedTerrain& side = *halves[half][k];
-      const Completion completion = worker.complete(FillMethod::kImproved, side);
-      scores.push_back(worker.score(FillMethod::kImproved, side, completion));
+    for (std::size_t k = 0; k < std::min(group.size(), kMostFills / groups.size()); ++k) {
+      const Completion completion = worker.complete(FillMethod::kImproved, *group[k]);
+      scores.push_back(worker.score(FillMethod::kImproved, *group[k], completion));
     }
   }
   return scores;
@@ -75,17 +104,12 @@ bool has_unseen(const Pieces& pieces) {
 
 ImprovedChoice choose_improved(const Pieces& library, int cell_mm) {
   const std::array settings{improved_config(cell_mm), drawn_config(cell_mm)};
-  std::vector<std::unique_ptr<ScannedTerrain>> sides;
-  std::array<Pieces, 2> halves;
-  for (std::size_t k = 0; k < library.size(); ++k) {
-    for (std::size_t side = 0; side < 2; ++side) {
-      sides.push_back(side_of(*library[k], side));
-      halves[(k + side) % 2].push_back(sides.back().get());
-    }
+  const Groups groups = grouped(library);
+  if (!std::all_of(groups.pieces.begin(), groups.pieces.end(), has_unseen)) {
+    return {settings[1], 0, 0};
   }
-  if (!has_unseen(halves[0]) || !has_unseen(halves[1])) return {settings[1], 0, 0};
-  const std::vector<FillScore> guided = scores_of(halves, cell_mm, settings[0]);
-  const std::vector<FillScore> drawn = scores_of(halves, cell_mm, settings[1]);
+  const std::vector<FillScore> guided = scores_of(groups.pieces, cell_mm, settings[0]);
+  const std::vector<FillScore> drawn = scores_of(groups.pieces, cell_mm, settings[1]);
   double sum = 0;
   double squares = 0;
   for (std::size_t k = 0; k < guided.size(); ++k) {

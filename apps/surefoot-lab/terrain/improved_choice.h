@@ -18,11 +18,12 @@ struct ImprovedChoice {
 // Small patches that the learned prior guides, or the paper's patches in several draws without a
 // prior: where the library is small, or its rocks are unlike each other, the prior has learned
 // too little, and what it says of other ground is worse than the texture.
-// One side of the sensor's path is filled with what the other side teaches, and the other way
-// round; sides change places from piece to piece, so that ground that was also walked over
-// backwards, as the next piece, does not teach about itself. The prior is taken where it is better
-// by more than the standard error; otherwise the simpler settings are.
-// A library without unseen cells on a side cannot decide: no prior. Throws as make_material().
+// Of ten pieces and more, every two are filled with what the others teach. Of fewer, one side of
+// the sensor's path is filled with what the other side teaches, and the other way round; sides
+// change places from piece to piece, so that ground that was also walked over backwards, as the
+// next piece, does not teach about itself. The prior is taken where it is better by more than the
+// standard error; otherwise the simpler settings are.
+// A library without unseen cells in a group cannot decide: no prior. Throws as make_material().
 ImprovedChoice choose_improved(const std::vector<const ScannedTerrain*>& library, int cell_mm);
 
 }  // namespace surefoot::apps
