@@ -113,6 +113,7 @@ void TerrainTask::complete() {
     working_.spread_m[i] = ground.spread_m[i];
   }
   if (fills()) working_counters_.no_patch = static_cast<std::uint64_t>(filler_.counts().no_patch);
+  working_.raise_crests();
   working_digest_ = working_.digest();
 }
 

@@ -118,6 +118,20 @@ Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& que
   return best;
 }
 
+Result<double> highest_ground_m(const MapWindow& window, double x_O_m, double y_O_m) {
+  const Result<CellIndex> index = window.locate(x_O_m, y_O_m);
+  if (!index.ok()) return index.status();
+  double highest_m = 0;
+  bool found = false;
+  for_cells_under_foot(window, index.value(), [&](CellIndex, const WindowCell& cell) {
+    const auto height_m = static_cast<double>(cell.height_m);
+    if (!found || height_m > highest_m) highest_m = height_m;
+    found = true;
+  });
+  if (!found) return Status::kNotFound;
+  return highest_m;
+}
+
 Result<double> level_ground_m(const MapWindow& window, double x_O_m, double y_O_m) {
   const Result<CellIndex> index = window.locate(x_O_m, y_O_m);
   if (!index.ok()) return index.status();

@@ -58,6 +58,9 @@ void for_cells_under_foot(const MapWindow& window, CellIndex centre, Visit&& vis
   }
 }
 
+// The highest of them. Errors as MapWindow::locate; kNotFound: none has a height.
+Result<double> highest_ground_m(const MapWindow& window, double x_O_m, double y_O_m);
+
 // Height of the ground under a foot at a place around which the ground bears feet everywhere: the
 // mean as in Foothold::z_O_m. Errors as MapWindow::locate; kNotFound: not steppable, or something
 // that is not is next to it.

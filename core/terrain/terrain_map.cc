@@ -1,6 +1,7 @@
 #include "core/terrain/terrain_map.h"
 
 #include "core/base/fields.h"
+#include "core/mapping/foothold.h"
 
 namespace surefoot::terrain {
 
@@ -8,6 +9,21 @@ void TerrainMap::clear() {
   ground.clear();
   cost.fill(0);
   spread_m.fill(0);
+  crest_m.fill(kNoCrest_m);
+}
+
+void TerrainMap::raise_crests() {
+  for (std::int32_t iy = 0; iy < mapping::kWindowSide; ++iy) {
+    for (std::int32_t ix = 0; ix < mapping::kWindowSide; ++ix) {
+      const mapping::CellIndex middle = ground.first + mapping::CellIndex{ix, iy};
+      float& crest = crest_m[ground.place(middle)];
+      crest = kNoCrest_m;
+      mapping::for_cells_under_foot(ground, middle,
+                                    [&](mapping::CellIndex, const mapping::WindowCell& cell) {
+                                      if (cell.height_m > crest) crest = cell.height_m;
+                                    });
+    }
+  }
 }
 
 std::uint64_t TerrainMap::digest() const {

@@ -20,9 +20,15 @@ struct TerrainMap {
   mapping::MapWindow ground;
   std::array<float, kCells> cost{};      // 0 to 1, mean over the draws; without height: 0
   std::array<float, kCells> spread_m{};  // standard deviation of a filled height; measured: 0
+  // Highest of the 3 x 3 around: what a leg beside it would touch. No height there: kNoCrest_m.
+  static constexpr float kNoCrest_m = -1e3F;
+  std::array<float, kCells> crest_m{};
 
   // As before the first one, and every page written.
   void clear();
+
+  // crest_m from the heights of `ground`. Cost: 9 look-ups a cell.
+  void raise_crests();
 
   // Hash of everything above.
   std::uint64_t digest() const;
@@ -32,6 +38,7 @@ struct TerrainMap {
     visit("ground", self.ground);
     visit("cost", self.cost);
     visit("spread_m", self.spread_m);
+    visit("crest_m", self.crest_m);
   }
 };
 

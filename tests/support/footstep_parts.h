@@ -82,6 +82,7 @@ inline std::unique_ptr<terrain::TerrainMap> terrain_of(
     map->cost[i] = static_cast<float>(given.cost);
     map->spread_m[i] = static_cast<float>(given.spread_m);
   }
+  map->raise_crests();
   return map;
 }
 

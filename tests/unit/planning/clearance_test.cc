@@ -9,6 +9,7 @@
 
 #include "core/base/random.h"
 #include "core/geometry/rotations.h"
+#include "core/mapping/foothold.h"
 #include "tests/support/footstep_parts.h"
 
 namespace surefoot::planning {
@@ -62,7 +63,7 @@ Placed placed(Random& random, const robot::RobotModel& model) {
   return robot;
 }
 
-// Every millimetre or so.
+// Every millimetre or so; legs against the cells next to theirs as well.
 double searched_m(const robot::RobotModel& model, const terrain::TerrainMap& map, double offset_m,
                   const Placed& robot) {
   double deepest_m = 0;
@@ -71,6 +72,13 @@ double searched_m(const robot::RobotModel& model, const terrain::TerrainMap& map
     const Result<double> ground = map.ground.height_at(p_O[0], p_O[1]);
     if (!ground.ok()) return;
     deepest_m = std::max(deepest_m, ground.value() + offset_m + radius_m - p_O[2]);
+  };
+  const auto look_beside = [&](const Vector3& p_B, double radius_m) {
+    const Vector3 p_O = robot.R_OB * p_B + robot.p_OB_m;
+    const Result<double> ground = mapping::highest_ground_m(map.ground, p_O[0], p_O[1]);
+    if (!ground.ok()) return;
+    const double under_m = p_O[2] - radius_m - kLegMargin_m;
+    deepest_m = std::max(deepest_m, ground.value() + offset_m - under_m);
   };
   constexpr int kParts = 100;
   for (int i = 0; i <= kParts; ++i) {
@@ -86,8 +94,8 @@ double searched_m(const robot::RobotModel& model, const terrain::TerrainMap& map
     const auto p_B = robot::leg_points_B(model, leg, q).p_B_m;
     for (int i = 0; i <= kParts; ++i) {
       const double s = i / 100.0;
-      look(p_B[1] + s * (p_B[2] - p_B[1]), model.thigh_radius_m);
-      look(p_B[2] + s * (p_B[3] - p_B[2]), model.shank_radius_m);
+      look_beside(p_B[1] + s * (p_B[2] - p_B[1]), model.thigh_radius_m);
+      look_beside(p_B[2] + s * (p_B[3] - p_B[2]), model.shank_radius_m);
     }
   }
   return deepest_m;
@@ -129,8 +137,8 @@ TEST(Clearance, LevelGroundIsTouchedByWhatIsLowest) {
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     const robot::LegVector q = robot::solve_leg(model, leg, feet[leg] - p_OB_m).q_rad;
     const auto p_B = robot::leg_points_B(model, leg, q).p_B_m;
-    const double middle_m = 0.13 + 0.5 * (p_B[2][2] + p_B[3][2]) - model.shank_radius_m;
-    shank_m = std::min(shank_m, middle_m);
+    const double lower_m = 0.13 + 0.4 * p_B[2][2] + 0.6 * p_B[3][2] - model.shank_radius_m;
+    shank_m = std::min(shank_m, lower_m - kLegMargin_m);
   }
   for (double ground_m = -0.02; ground_m < 0.15; ground_m += 0.005) {
     const auto map =
@@ -171,8 +179,8 @@ TEST(Clearance, LegsOutOfReachCountAsStretched) {
       tests::terrain_of([](mapping::CellIndex) { return GroundCell{.height_m = 0.05}; });
   const double deepest_m =
       deepest_contact_m(model, {map.get(), 0.0}, Matrix3::Identity(), Vector3(0, 0, 0.13), feet);
-  const double shank_m =
-      0.13 - model.thigh_length_m - 0.5 * model.shank_length_m - model.shank_radius_m;
+  const double shank_m = 0.13 - model.thigh_length_m - 0.6 * model.shank_length_m -
+                         model.shank_radius_m - kLegMargin_m;
   EXPECT_NEAR(deepest_m, 0.05 - shank_m, 0.002);
 }
 

@@ -188,6 +188,17 @@ class FootstepOracle {
       if (!ground.ok()) return;
       deepest_m = std::max(deepest_m, ground.value() + problem_.map_offset_m + radius_m - p_O[2]);
     };
+    // Legs against the highest cell of nine.
+    const auto look_beside = [&](const Vector3& p_B, double radius_m) {
+      const Vector3 p_O = R_OB * p_B + p_OB_m;
+      const auto middle = mapping::cell_index(p_O[0], p_O[1], map_.ground.cell_size_m);
+      for (int k = 0; k < 9 && map_.ground.contains(middle); ++k) {
+        const auto* cell = map_.ground.find(middle + mapping::CellIndex{k / 3 - 1, k % 3 - 1});
+        if (cell == nullptr || !cell->has_height()) continue;
+        const double ground_m = static_cast<double>(cell->height_m) + problem_.map_offset_m;
+        deepest_m = std::max(deepest_m, ground_m + radius_m + 0.004 - p_O[2]);
+      }
+    };
     const auto& size = model_.trunk_size_m;
     for (const double x : {-0.5, 0.0, 0.5}) {
       for (const double y : {-0.5, 0.0, 0.5}) {
@@ -204,10 +215,10 @@ class FootstepOracle {
                           abad * Vector3(0.0, left * model_.hip_offset_m, 0.0);
       const Vector3 thigh(0.0, left * model_.knee_offset_m, -model_.thigh_length_m);
       const Vector3 knee = hip + abad * (Eigen::AngleAxisd(-q[1], Vector3::UnitY()) * thigh);
-      look(knee, model_.thigh_radius_m);
-      const Vector3 upper = hip + 0.5 * (knee - hip);
-      look(upper, model_.thigh_radius_m);
-      look(knee + 0.5 * (foot_B - knee), model_.shank_radius_m);
+      look_beside(knee, model_.thigh_radius_m);
+      look_beside(0.5 * (hip + knee), model_.thigh_radius_m);
+      look_beside(0.7 * knee + 0.3 * foot_B, model_.shank_radius_m);
+      look_beside(0.4 * knee + 0.6 * foot_B, model_.shank_radius_m);
     }
     return deepest_m;
   }
