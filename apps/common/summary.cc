@@ -43,7 +43,8 @@ Json counters_json(const RunFacts& facts) {
           {"static_steps_lowered", facts.static_walk.lowered},
           {"static_steps_tipped", facts.static_walk.tipped},
           {"static_steps_passed_over", facts.static_walk.passed_over},
-          {"static_steps_waited", facts.static_walk.waited}};
+          {"static_steps_waited", facts.static_walk.waited},
+          {"static_steps_retreated", facts.static_walk.retreated}};
 }
 
 Json jump_json(const JumpFigures& jump) {

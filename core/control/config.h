@@ -142,27 +142,30 @@ struct MpcConfig {
 // One leg in the air at a time (static_walk.h), instead of the gaits.
 struct StaticWalkConfig {
   bool enabled = false;
-  double shift_s = 0;          // of the trunk, between steps: what the stride reckons with
-  double shift_speed_m_s = 0;  // mean speed of the centre of mass on its way
-  double swing_s = 0;          // shortest
-  double foot_speed_m_s = 0;   // mean speed on the way up, over and down
-  double max_stride_m = 0;     // way of the trunk while each leg steps once
-  double margin_m = 0;         // of the centre of mass inside the triangle of the standing feet
-  double lift_margin_m = 0;    // of the capture point in that triangle, for a foot to lift off
-  double patience_s = 0;       // with the trunk not there yet, before the step is planned anew
-  double slack_m = 0;          // a standing foot farther off is held where it is now
-  double rough_from = 0;       // mean terrain cost of the steps planned, from which on,
-  double rough_to = 0;         // and up to which stride and the trunk's speed come down
-  double rough_share = 0;      // to this share
-  double caution = 0;          // share of its speed at which the trunk shifts after a mishap,
-  int cautious_steps = 0;      // for so many steps
-  double slip_m = 0;           // a standing foot moved by more: the one in the air comes down
+  double shift_s = 0;                  // of the trunk, between steps: what the stride reckons with
+  double shift_speed_m_s = 0;          // mean speed of the centre of mass on its way
+  double shift_acceleration_m_s2 = 0;  // its greatest
+  double swing_s = 0;                  // shortest
+  double foot_speed_m_s = 0;           // mean speed on the way up, over and down
+  double max_stride_m = 0;             // way of the trunk while each leg steps once
+  double margin_m = 0;       // of the centre of mass inside the triangle of the standing feet
+  double lift_margin_m = 0;  // of the capture point in that triangle, for a foot to lift off
+  double patience_s = 0;     // with the trunk not there yet, before the step is planned anew
+  double slack_m = 0;        // a standing foot farther off is held where it is now
+  double rough_from = 0;     // mean terrain cost of the steps planned, from which on,
+  double rough_to = 0;       // and up to which stride and the trunk's speed come down
+  double rough_share = 0;    // to this share
+  double caution = 0;        // share of its speed at which the trunk shifts after a mishap,
+  int cautious_steps = 0;    // for so many steps
+  double slip_m = 0;         // a standing foot moved by more: the one in the air comes down
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.boolean("enabled", self.enabled, "one leg at a time instead of the gaits");
     visit.real("shift_s", self.shift_s, {0.02, 10.0}, "of the trunk between steps");
     visit.real("shift_speed_m_s", self.shift_speed_m_s, {0.005, 2.0}, "mean, of the trunk");
+    visit.real("shift_acceleration_m_s2", self.shift_acceleration_m_s2, {0.05, 10.0},
+               "greatest, of the trunk");
     visit.real("swing_s", self.swing_s, {0.05, 10.0}, "shortest swing");
     visit.real("foot_speed_m_s", self.foot_speed_m_s, {0.01, 5.0}, "mean, of a swinging foot");
     visit.real("max_stride_m", self.max_stride_m, {0.005, 2.0}, "way of the trunk per four steps");

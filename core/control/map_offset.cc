@@ -10,6 +10,7 @@ namespace {
 
 // After the contact was noticed: the foot has come to rest, the ball of rubber is pressed.
 constexpr std::uint32_t kSettledTicks = 10;
+constexpr double kHangs_m = 0.015;  // above the map's highest cell under the foot
 
 }  // namespace
 
@@ -38,6 +39,13 @@ void MapOffset::update(const estimation::RobotState& state,
     noted_[leg] = true;
   }
   offset_m_ = math::clamp(middle(), -max_offset_m_, max_offset_m_);
+}
+
+bool MapOffset::hangs(const Vector3& foot_O_m, const mapping::MapWindow* window) const {
+  if (window == nullptr) return false;
+  const Result<double> ground_m = mapping::highest_ground_m(*window, foot_O_m[0], foot_O_m[1]);
+  if (!ground_m.ok()) return false;
+  return foot_O_m[2] - foot_radius_m_ - offset_m_ - ground_m.value() > kHangs_m;
 }
 
 // Of the notes there are: the middle one, or the mean of the middle two.

@@ -28,6 +28,10 @@ class MapOffset {
   void update(const estimation::RobotState& state, const std::array<LegStatus, robot::kLegs>& legs,
               const mapping::MapWindow* window);
 
+  // By the map, offset included, there is no ground under a foot: at least 15 mm below it. Unknown
+  // ground: no.
+  bool hangs(const Vector3& foot_O_m, const mapping::MapWindow* window) const;
+
   // To be added to heights of the map. 0 until a foot has stood on ground that the map knows.
   double offset_m() const { return offset_m_; }
 

@@ -14,10 +14,11 @@ namespace {
 
 constexpr double kFeelsGround = 0.5;     // of a swing: before, the toe has caught on something
 constexpr double kShortestShift = 0.25;  // of shift_s: the load still goes from foot to foot
+constexpr double kQuinticPeak = 5.7735;  // curvature of the blend: 10 / sqrt(3)
 constexpr double kMaxHeadingLag_rad = 0.15;
-constexpr double kLost_s = 0.03;  // without contact: the foot has lost its ground
 constexpr double kRetry_s = 0.1;
 constexpr double kTipping_m = 0.01;  // of the capture point beyond the triangle
+constexpr double kStalled_s = 0.25;  // the trunk waits so long for a foot that lost its ground
 
 }  // namespace
 
@@ -31,8 +32,7 @@ void StaticWalk::reset(const ControlConfig& config, const robot::RobotModel& mod
   map_offset_.reset(config.foothold.max_map_offset_m, model.foot_radius_m);
   whole_body_.reset(config.whole_body, model);
   stand();
-  feet_O_m_.fill(Vector3::Zero());
-  taken_O_m_.fill(Vector3::Zero());
+  feet_.reset(config.swing, config.static_walk);
   counters_ = StaticWalkCounters{};
   joints_ = actuation::JointCommands{};
 }
@@ -48,6 +48,8 @@ void StaticWalk::stand() {
   homeward_ = false;
   asked_ = 0;
   cautious_ = 0;
+  stalled_ = false;
+  stalled_s_ = 0;
   pace_ = 1;
   legs_.fill(LegStatus{});
   load_.fill(1.0);
@@ -59,15 +61,14 @@ void StaticWalk::start(const estimation::RobotState& state) {
   Vector2 centre = Vector2::Zero();
   double feet_m = 0;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    feet_O_m_[leg] = state.feet[leg].p_O_m;
-    legs_[leg].anchor_O_m = feet_O_m_[leg];
-    legs_[leg].foothold.nominal_O_m = feet_O_m_[leg];
-    legs_[leg].foothold.position_O_m = feet_O_m_[leg];
-    centre += feet_O_m_[leg].head<2>() / static_cast<double>(robot::kLegs);
-    feet_m += feet_O_m_[leg][2] / static_cast<double>(robot::kLegs);
+    const Vector3& foot = state.feet[leg].p_O_m;
+    legs_[leg].anchor_O_m = foot;
+    legs_[leg].foothold.nominal_O_m = foot;
+    legs_[leg].foothold.position_O_m = foot;
+    centre += foot.head<2>() / static_cast<double>(robot::kLegs);
+    feet_m += foot[2] / static_cast<double>(robot::kLegs);
   }
-  taken_O_m_ = feet_O_m_;
-  lost_s_.fill(0);
+  feet_.take(state);
   yaw_rad_ = state.yaw_rad;
   to_ = {centre, feet_m - model_.foot_radius_m + config_.body.height_m,
          Vector3(0.0, 0.0, state.yaw_rad)};
@@ -86,9 +87,9 @@ const actuation::JointCommands& StaticWalk::update(const estimation::RobotState&
   const bool filled = terrain != nullptr && terrain->ground.cell_size_m > 0;
   const Ground ground{filled ? &terrain->ground : window, filled ? terrain : nullptr, rule};
   map_offset_.update(state, legs_, ground.window);
-  follow_feet(state, step_s);
+  feet_.follow(state, legs_, load_, step_s);
   shifted_ = false;
-  progress_ = math::clamp(progress_ + step_s / duration_s_, 0.0, 1.0);
+  if (!stalled_) progress_ = math::clamp(progress_ + step_s / duration_s_, 0.0, 1.0);
   follow(velocity, step_s);
   if (walking) {
     yaw_rad_ = state.yaw_rad + math::clamp(math::wrap_angle(yaw_rad_ - state.yaw_rad) +
@@ -97,14 +98,14 @@ const actuation::JointCommands& StaticWalk::update(const estimation::RobotState&
   }
   switch (stage_) {
     case Stage::kStand:
-      if (!walking) {
-        blocked_s_ = 0;
-      } else {
-        try_step(state, ground, step_s);
-      }
+      if (!walking) blocked_s_ = 0;
+      if (walking) try_step(state, ground, step_s);
       break;
     case Stage::kShift: shift(state, ground.window, step_s); break;
-    case Stage::kSwing: swing(state, step_s); break;
+    case Stage::kRetreat:
+      if (progress_ >= 1.0) stage_ = Stage::kStand;
+      break;
+    case Stage::kSwing: swing(state, ground.window, step_s); break;
   }
   command(state);
   return joints_;
@@ -114,6 +115,8 @@ const actuation::JointCommands& StaticWalk::update(const estimation::RobotState&
 void StaticWalk::shift(const estimation::RobotState& state, const mapping::MapWindow* window,
                        double step_s) {
   load_[leg()] = 1.0 - quintic(progress_).value;
+  if (must_retreat(state, step_s)) return retreat();
+  if (stalled_) return;
   if (progress_ < 1.0) return;
   shifted_ = may_lift(state);
   if (shifted_) return lift(state, window);
@@ -123,6 +126,33 @@ void StaticWalk::shift(const estimation::RobotState& state, const mapping::MapWi
   be_cautious();
   load_[leg()] = 1.0;
   stage_ = Stage::kStand;
+}
+
+// During a shift: a foot slips, the trunk tips, or waits in vain for a foot that lost its ground.
+bool StaticWalk::must_retreat(const estimation::RobotState& state, double step_s) {
+  stalled_ = feet_.have_lost_ground(leg());
+  if (stalled_) {
+    stalled_s_ += step_s;
+    return stalled_s_ > kStalled_s;
+  }
+  if (feet_.have_slipped(state, leg())) {
+    ++counters_.slipped;
+    feet_.take(state);
+    return true;
+  }
+  return is_tipping_over_all(state);
+}
+
+// Back over the middle of the feet, with all of them on the ground; then another try.
+void StaticWalk::retreat() {
+  ++counters_.retreated;
+  be_cautious();
+  stalled_ = false;
+  load_.fill(1.0);
+  from_ = pose_now().pose;
+  to_ = planning::trunk_over(model_, shape_, feet_.places_O_m(), yaw_rad_);
+  set_duration();
+  stage_ = Stage::kRetreat;
 }
 
 double StaticWalk::cycle_s() const {
@@ -139,45 +169,20 @@ void StaticWalk::follow(const VelocityCommand& velocity, double step_s) {
   velocity_.yaw_rate_rad_s += share * (velocity.yaw_rate_rad_s - velocity_.yaw_rate_rad_s);
 }
 
-// Way of the trunk per four steps.
+// Way of the trunk per four steps. A command that is too fast for strides loses its speed, not what
+// it says of the way to the side.
 Vector2 StaticWalk::stride_O_m() const {
-  const Vector2 stride =
-      planning::from_heading(yaw_rad_, velocity_.forward_m_s, velocity_.left_m_s) * cycle_s();
-  const double length_m = stride.norm();
   const double longest_m = config_.static_walk.max_stride_m * pace_;
+  const double forward_m = math::clamp(velocity_.forward_m_s * cycle_s(), -longest_m, longest_m);
+  const double left_m = math::clamp(velocity_.left_m_s * cycle_s(), -longest_m, longest_m);
+  const Vector2 stride = planning::from_heading(yaw_rad_, forward_m, left_m);
+  const double length_m = stride.norm();
   return length_m > longest_m ? Vector2(stride * (longest_m / length_m)) : stride;
 }
 
 Vector3 StaticWalk::nominal_O_m() const {
   const planning::Hips hips = planning::stance_hips_O_m(model_, shape_.lateral_offset_m, yaw_rad_);
-  return planning::nominal_place_O_m(feet_O_m_, hips, leg(), stride_O_m());
-}
-
-// Where the feet are is where they stand from now on.
-void StaticWalk::take_feet(const estimation::RobotState& state) {
-  for (std::size_t i = 0; i < robot::kLegs; ++i) feet_O_m_[i] = state.feet[i].p_O_m;
-  taken_O_m_ = feet_O_m_;
-  lost_s_.fill(0);
-}
-
-// A foot that slides off an edge stands where it comes to rest: held where it was it would lift the
-// trunk off its other feet. One without ground under it goes down until it feels some.
-void StaticWalk::follow_feet(const estimation::RobotState& state, double step_s) {
-  for (std::size_t i = 0; i < robot::kLegs; ++i) {
-    if (legs_[i].mode != LegMode::kStance) continue;
-    const estimation::FootState& foot = state.feet[i];
-    lost_s_[i] = foot.in_contact || load_[i] < 1.0 ? 0.0 : lost_s_[i] + step_s;
-    if (lost_s_[i] > kLost_s) {
-      const double lowest_m = taken_O_m_[i][2] - config_.swing.search_depth_m;
-      feet_O_m_[i][2] =
-          std::max(lowest_m, feet_O_m_[i][2] - config_.swing.search_speed_m_s * step_s);
-      continue;
-    }
-    const Vector3 off = foot.p_O_m - feet_O_m_[i];
-    const double off_m = math::sqrt(off.squaredNorm());
-    const double slack_m = config_.static_walk.slack_m;
-    if (foot.in_contact && off_m > slack_m) feet_O_m_[i] += off * (1.0 - slack_m / off_m);
-  }
+  return planning::nominal_place_O_m(feet_.places_O_m(), hips, leg(), stride_O_m());
 }
 
 // Where the centre of mass would come to rest over a foot put there now (linear inverted pendulum).
@@ -193,7 +198,7 @@ bool StaticWalk::may_lift(const estimation::RobotState& state) const {
   for (std::size_t i = 0; i < robot::kLegs; ++i) {
     if (i != leg() && !state.feet[i].in_contact) return false;
   }
-  const planning::Triangle triangle = planning::standing_triangle(feet_O_m_, turn_);
+  const planning::Triangle triangle = planning::standing_triangle(feet_.places_O_m(), turn_);
   constexpr double kOfRoom = 0.5;
   planning::SupportRegion region;
   const double margin_m =
@@ -201,9 +206,21 @@ bool StaticWalk::may_lift(const estimation::RobotState& state) const {
   return ok(region.add(triangle, margin_m)) && region.contains(capture_point_O_m(state));
 }
 
+// Inside the triangle of any three feet it is inside that of all four.
+bool StaticWalk::is_tipping_over_all(const estimation::RobotState& state) const {
+  const Vector2 capture_point = capture_point_O_m(state);
+  for (std::size_t turn = 0; turn < robot::kLegs; ++turn) {
+    planning::SupportRegion region;
+    if (!ok(region.add(planning::standing_triangle(feet_.places_O_m(), turn), -kTipping_m)))
+      return false;
+    if (region.contains(capture_point)) return false;
+  }
+  return true;
+}
+
 bool StaticWalk::is_tipping(const estimation::RobotState& state) const {
   planning::SupportRegion region;
-  return ok(region.add(planning::standing_triangle(feet_O_m_, turn_), -kTipping_m)) &&
+  return ok(region.add(planning::standing_triangle(feet_.places_O_m(), turn_), -kTipping_m)) &&
          !region.contains(capture_point_O_m(state));
 }
 
@@ -224,7 +241,7 @@ void StaticWalk::try_step(const estimation::RobotState& state, const Ground& gro
 
 // false: the leg has no foothold.
 bool StaticWalk::begin_step(const estimation::RobotState& state, const Ground& ground) {
-  take_feet(state);
+  feet_.take(state);
   Foothold& foothold = legs_[leg()].foothold;
   foothold = choose_foothold(state, ground);
   if (foothold.reason == FootholdReason::kNone) return false;
@@ -243,7 +260,7 @@ Foothold StaticWalk::choose_foothold(const estimation::RobotState& state, const 
 Foothold StaticWalk::plan_foothold(const estimation::RobotState& state,
                                    const terrain::TerrainMap& terrain) {
   planning::FootstepProblem problem;
-  problem.feet_O_m = feet_O_m_;
+  problem.feet_O_m = feet_.places_O_m();
   problem.turn = turn_;
   problem.stride_O_m = stride_O_m();
   problem.yaw_rad = yaw_rad_;
@@ -268,36 +285,42 @@ void StaticWalk::set_pace(const planning::FootstepPlan& plan) {
   cost /= static_cast<double>(plan.steps.size());
   const double span = std::max(config.rough_to - config.rough_from, 1e-6);
   const double rough = math::clamp((cost - config.rough_from) / span, 0.0, 1.0);
-  constexpr double kFollow = 0.5;  // of the difference, per step
-  pace_ += kFollow * (1.0 - rough * (1.0 - config.rough_share) - pace_);
+  constexpr double kPerStep = 0.5;  // of the difference
+  pace_ += kPerStep * (1.0 - rough * (1.0 - config.rough_share) - pace_);
 }
 
 void StaticWalk::begin_shift(const estimation::RobotState& state,
                              const terrain::TerrainMap* terrain) {
   from_ = pose_now().pose;
   plan_pose(state, terrain);
+  set_duration();
+  cautious_ = std::max(0, cautious_ - 1);
+  stalled_s_ = 0;
+  waited_s_ = 0;
+  stage_ = Stage::kShift;
+}
+
+// Of the way from one pose to the other, which begins now.
+void StaticWalk::set_duration() {
   const StaticWalkConfig& config = config_.static_walk;
   // Turning moves the hips as far as the trunk is long.
   const Vector3 turn_rad = to_.roll_pitch_yaw_rad - from_.roll_pitch_yaw_rad;
   const double lever_m = robot::hip_joint_B_m(model_, robot::kFrontLeft).norm();
-  const Vector3 way(math::sqrt((to_.centre_O_m - from_.centre_O_m).squaredNorm()),
-                    to_.height_O_m - from_.height_O_m,
-                    lever_m * math::sqrt(math::square(turn_rad[0]) + math::square(turn_rad[1])));
-  const double way_m = math::sqrt(way.squaredNorm());
+  const double way_m = math::sqrt((to_.centre_O_m - from_.centre_O_m).squaredNorm() +
+                                  math::square(to_.height_O_m - from_.height_O_m) +
+                                  math::square(lever_m) * turn_rad.head<2>().squaredNorm());
   const double speed_m_s = config.shift_speed_m_s * pace_ * (cautious_ > 0 ? config.caution : 1.0);
-  cautious_ = std::max(0, cautious_ - 1);
-  duration_s_ = std::max(kShortestShift * config.shift_s, way_m / speed_m_s);
+  duration_s_ = std::max({kShortestShift * config.shift_s, way_m / speed_m_s,
+                          math::sqrt(kQuinticPeak * way_m / config.shift_acceleration_m_s2)});
   progress_ = 0;
-  waited_s_ = 0;
-  stage_ = Stage::kShift;
 }
 
 // The trunk's pose for the step under way.
 void StaticWalk::plan_pose(const estimation::RobotState& state,
                            const terrain::TerrainMap* terrain) {
-  planning::Feet landed = feet_O_m_;
+  planning::Feet landed = feet_.places_O_m();
   landed[leg()] = legs_[leg()].foothold.position_O_m;
-  const planning::Step way{feet_O_m_, landed, turn_, yaw_rad_, centre_offset_O_m(state)};
+  const planning::Step way{feet_.places_O_m(), landed, turn_, yaw_rad_, centre_offset_O_m(state)};
   const planning::StepPose step =
       planning::step_pose(model_, shape_, planning::step_limits(config_.footsteps),
                           {terrain, map_offset_.offset_m()}, way);
@@ -325,16 +348,17 @@ void StaticWalk::lift(const estimation::RobotState& state, const mapping::MapWin
   stage_ = Stage::kSwing;
 }
 
-void StaticWalk::swing(const estimation::RobotState& state, double step_s) {
+void StaticWalk::swing(const estimation::RobotState& state, const mapping::MapWindow* window,
+                       double step_s) {
   LegStatus& status = legs_[leg()];
   const estimation::FootState& foot = state.feet[leg()];
   if (status.mode == LegMode::kSwing) {
     status.swing_progress += step_s / status.swing_s;
     if (foot.in_contact && status.swing_progress >= kFeelsGround) return put_down(state);
-    if (has_slipped(state)) {
+    if (feet_.have_slipped(state, leg())) {
       ++counters_.slipped;
       be_cautious();
-      take_feet(state);  // they are held where they are now: one slip is answered once
+      feet_.take(state);  // they are held where they are now: one slip is answered once
       begin_search(foot.p_O_m);
     } else if (is_tipping(state)) {
       ++counters_.tipped;
@@ -345,7 +369,8 @@ void StaticWalk::swing(const estimation::RobotState& state, double step_s) {
     }
   } else {
     status.searched_m += config_.swing.search_speed_m_s * step_s;
-    if (foot.in_contact) return put_down(state);
+    if (foot.in_contact)
+      return map_offset_.hangs(foot.p_O_m, window) ? go_back(state) : put_down(state);
     const double lowest_m = std::min(status.path.lift_off_O_m[2], status.path.landing_O_m[2]);
     const double depth_m = config_.swing.search_depth_m + status.anchor_O_m[2] - lowest_m;
     if (status.searched_m >= depth_m) return go_back(state);
@@ -358,15 +383,6 @@ void StaticWalk::begin_search(const Vector3& from_O_m) {
   status.mode = LegMode::kSearch;
   status.anchor_O_m = from_O_m;
   status.searched_m = 0;
-}
-
-bool StaticWalk::has_slipped(const estimation::RobotState& state) const {
-  const double limit_m2 = math::square(config_.static_walk.slip_m);
-  for (std::size_t i = 0; i < robot::kLegs; ++i) {
-    if (i == leg()) continue;
-    if ((state.feet[i].p_O_m - taken_O_m_[i]).squaredNorm() > limit_m2) return true;
-  }
-  return false;
 }
 
 // To where it has stood, which bears a foot; the place that does not is not tried again.
@@ -393,8 +409,7 @@ void StaticWalk::put_down(const estimation::RobotState& state) {
   status.swing_progress = 0;
   status.height_above_landing_m = 0;
   status.anchor_O_m = state.feet[leg()].p_O_m;
-  feet_O_m_[leg()] = status.anchor_O_m;
-  taken_O_m_[leg()] = status.anchor_O_m;
+  feet_.put(leg(), status.anchor_O_m);
   load_[leg()] = 1;
   ++counters_.steps;
   // A foot that hangs keeps its turn: while it is asked, the others may carry.
@@ -405,8 +420,8 @@ void StaticWalk::put_down(const estimation::RobotState& state) {
 // On the way from the last pose to the next.
 StaticWalk::Motion StaticWalk::pose_now() const {
   const Quintic blend = quintic(progress_);
-  const double rate = blend.slope / duration_s_;
-  const double curvature = blend.curvature / math::square(duration_s_);
+  const double rate = stalled_ ? 0.0 : blend.slope / duration_s_;
+  const double curvature = stalled_ ? 0.0 : blend.curvature / math::square(duration_s_);
   const Vector2 way = to_.centre_O_m - from_.centre_O_m;
   const double rise_m = to_.height_O_m - from_.height_O_m;
   Vector3 turn = to_.roll_pitch_yaw_rad - from_.roll_pitch_yaw_rad;
@@ -436,7 +451,7 @@ void StaticWalk::command(const estimation::RobotState& state) {
   body.a_OB_m_s2 = motion.a_O_m_s2;
   body.R_OB = geometry::from_roll_pitch_yaw(rpy[0], rpy[1], rpy[2]);
   body.angular_velocity_O_rad_s = Vector3(0.0, 0.0, motion.yaw_rate_rad_s);
-  share_load(state, state.p_OB_m.head<2>() + offset, push_N(state, body));
+  share_load(state, push_N(state, body));
   const LegTasks tasks = leg_tasks(legs_, config_.swing);
   const WholeBodyCommand& wanted = whole_body_.update(whole_body_state(state), body, tasks);
   joints_ = joint_commands(wanted, tasks, config_);
@@ -449,12 +464,24 @@ void StaticWalk::command(const estimation::RobotState& state) {
 void StaticWalk::hold_feet(const BodyTask& body) {
   for (std::size_t i = 0; i < robot::kLegs; ++i) {
     if (legs_[i].mode != LegMode::kStance) continue;
-    const Vector3 foot_B = body.R_OB.transpose() * (feet_O_m_[i] - body.p_OB_m);
+    const Vector3 foot_B = body.R_OB.transpose() * (feet_.places_O_m()[i] - body.p_OB_m);
     const robot::LegVector q_rad = robot::solve_leg(model_, i, foot_B).q_rad;
     for (std::size_t k = 0; k < robot::kJointsPerLeg; ++k) {
       joints_[robot::joint_index(i, k)].position_rad = q_rad[static_cast<Eigen::Index>(k)];
     }
   }
+}
+
+void StaticWalk::share_load(const estimation::RobotState& state, const Vector3& force_O_N) {
+  planning::Feet feet;
+  LoadShares shares{};
+  for (std::size_t i = 0; i < robot::kLegs; ++i) {
+    feet[i] = state.feet[i].p_O_m;
+    if (legs_[i].mode == LegMode::kStance) shares[i] = load_[i];
+  }
+  const Vector3 centre = state.p_OB_m + state.R_OB * whole_body_.dynamics().centroid().p_B_m;
+  const auto forces = control::share_load(feet, shares, centre, force_O_N);
+  for (std::size_t i = 0; i < robot::kLegs; ++i) legs_[i].force_O_N = forces[i];
 }
 
 // The force that holds the robot up and on its path.
@@ -467,27 +494,6 @@ Vector3 StaticWalk::push_N(const estimation::RobotState& state, const BodyTask& 
                        gains.velocity_gain_1_s[axis] * (body.v_OB_m_s[i] - state.v_OB_m_s[i]);
   }
   return model_.total_mass_kg() * (acceleration + Vector3(0.0, 0.0, kGravity_m_s2));
-}
-
-// Vertical forces with their resultant through the centre of mass, the least squares of force^2 /
-// load, so that a foot is loaded and unloaded smoothly; what pushes sideways goes with them.
-void StaticWalk::share_load(const estimation::RobotState& state, const Vector2& centre_O_m,
-                            const Vector3& force_O_N) {
-  std::array<Vector3, robot::kLegs> lever;
-  Matrix3 gram = Matrix3::Identity() * 1e-9;  // feet in a line: still a solution
-  for (std::size_t i = 0; i < robot::kLegs; ++i) {
-    const Vector2 off = state.feet[i].p_O_m.head<2>() - centre_O_m;
-    lever[i] = Vector3(1.0, off[0], off[1]);
-    if (legs_[i].mode == LegMode::kStance) gram += load_[i] * lever[i] * lever[i].transpose();
-  }
-  const Vector3 multiplier = gram.llt().solve(Vector3(force_O_N[2], 0.0, 0.0));
-  for (std::size_t i = 0; i < robot::kLegs; ++i) {
-    Vector3& force = legs_[i].force_O_N;
-    force.setZero();
-    if (legs_[i].mode != LegMode::kStance) continue;
-    force[2] = std::max(0.0, load_[i] * lever[i].dot(multiplier));
-    force.head<2>() = force_O_N.head<2>() * (force[2] / std::max(force_O_N[2], 1e-3));
-  }
 }
 
 }  // namespace surefoot::control

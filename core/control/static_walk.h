@@ -12,8 +12,10 @@
 //          ground
 // Footholds: with filled terrain the first step of a plan of four (planning/footsteps.h), made anew
 // for every step; without it the nearest good cell (foothold.h).
-// A foot that finds no ground goes back to where it came from and the step is planned anew. When a
-// standing foot slips, the one in the air comes down where it is.
+// A foot that finds no ground goes back to where it came from and the step is planned anew, and so
+// does one that hangs by its shank. When a standing foot slips, the one in the air comes down where
+// it is; during a shift the trunk goes back over the middle of its feet:
+//   retreat  and then the step is planned anew
 // Without a foothold the robot stands and blocked_s() counts.
 //
 // Frames: O, metres, N. Memory: sizeof(StaticWalk) 106 kB, most of it the search for footsteps.
@@ -27,7 +29,9 @@
 #include "core/control/config.h"
 #include "core/control/foothold.h"
 #include "core/control/leg_status.h"
+#include "core/control/load_sharing.h"
 #include "core/control/map_offset.h"
+#include "core/control/standing_feet.h"
 #include "core/control/whole_body.h"
 #include "core/estimation/contact.h"
 #include "core/estimation/estimator.h"
@@ -47,6 +51,7 @@ struct StaticWalkCounters {
   std::uint64_t lowered = 0;      // a stance leg could not have reached: the trunk was lowered
   std::uint64_t tipped = 0;       // the trunk went over its feet: the one in the air came down
   std::uint64_t passed_over = 0;  // a leg had no foothold, and another stepped
+  std::uint64_t retreated = 0;    // a foot lost its ground during a shift: back over all feet
   std::uint64_t waited = 0;       // the trunk did not come to where the foot may lift: planned anew
 
   template <class Self, class Visitor>
@@ -59,6 +64,7 @@ struct StaticWalkCounters {
     visit("tipped", self.tipped);
     visit("passed_over", self.passed_over);
     visit("waited", self.waited);
+    visit("retreated", self.retreated);
   }
 };
 
@@ -91,7 +97,7 @@ class StaticWalk {
   const StaticWalkCounters& counters() const { return counters_; }
 
  private:
-  enum class Stage : std::uint8_t { kStand = 0, kShift, kSwing };
+  enum class Stage : std::uint8_t { kStand = 0, kShift, kSwing, kRetreat };
 
   struct Motion {
     planning::TrunkPose pose;
@@ -109,7 +115,6 @@ class StaticWalk {
 
   std::size_t leg() const;  // whose turn it is
   void stand();
-  void take_feet(const estimation::RobotState& state);
   void try_step(const estimation::RobotState& state, const Ground& ground, double step_s);
   bool begin_step(const estimation::RobotState& state, const Ground& ground);
   Foothold choose_foothold(const estimation::RobotState& state, const Ground& ground);
@@ -123,23 +128,24 @@ class StaticWalk {
   Motion pose_now() const;
   Vector2 centre_offset_O_m(const estimation::RobotState& state) const;
   void lift(const estimation::RobotState& state, const mapping::MapWindow* window);
-  void swing(const estimation::RobotState& state, double step_s);
-  bool has_slipped(const estimation::RobotState& state) const;
-  void follow_feet(const estimation::RobotState& state, double step_s);
+  void swing(const estimation::RobotState& state, const mapping::MapWindow* window, double step_s);
   Vector2 capture_point_O_m(const estimation::RobotState& state) const;
   void set_pace(const planning::FootstepPlan& plan);
   void be_cautious();
   bool may_lift(const estimation::RobotState& state) const;
   bool is_tipping(const estimation::RobotState& state) const;
   void shift(const estimation::RobotState& state, const mapping::MapWindow* window, double step_s);
+  bool must_retreat(const estimation::RobotState& state, double step_s);
+  bool is_tipping_over_all(const estimation::RobotState& state) const;
+  void retreat();
+  void set_duration();
   void begin_search(const Vector3& from_O_m);
   void go_back(const estimation::RobotState& state);
   void put_down(const estimation::RobotState& state);
   void command(const estimation::RobotState& state);
   void hold_feet(const BodyTask& body);
   Vector3 push_N(const estimation::RobotState& state, const BodyTask& body) const;
-  void share_load(const estimation::RobotState& state, const Vector2& centre_O_m,
-                  const Vector3& force_O_N);
+  void share_load(const estimation::RobotState& state, const Vector3& force_O_N);
 
   ControlConfig config_;
   robot::RobotModel model_;
@@ -155,18 +161,18 @@ class StaticWalk {
   double duration_s_ = 1;  // of the shift
   planning::TrunkPose from_;
   planning::TrunkPose to_;
-  planning::Feet feet_O_m_;                    // where the feet stand, the step's landing included
-  planning::Feet taken_O_m_;                   // where they stood when the step began
-  std::array<double, robot::kLegs> lost_s_{};  // without contact while they should stand
+  StandingFeet feet_;
   FixedVector<Vector2, planning::kMaxAvoided> avoided_O_m_;  // where feet found no ground
   bool homeward_ = false;  // the foot in the air has missed its ground
   double pace_ = 1;        // share of stride and speed, by how rough the planned steps' ground is
   std::size_t asked_ = 0;  // legs in a row that had no foothold
   int cautious_ = 0;       // steps still to be made slowly
   double waited_s_ = 0;    // for the trunk, after its shift
-  std::array<double, robot::kLegs> load_{};  // share of the load that a foot may carry, 0 to 1
-  VelocityCommand velocity_;                 // its mean over about a cycle
-  double yaw_rad_ = 0;                       // the heading to keep
+  bool stalled_ = false;   // the trunk waits for a foot that lost its ground
+  double stalled_s_ = 0;   // in this shift
+  LoadShares load_{};      // what a foot may carry
+  VelocityCommand velocity_;  // its mean over about a cycle
+  double yaw_rad_ = 0;        // the heading to keep
   double blocked_s_ = 0;
   double since_try_s_ = 0;  // the footholds were searched last
   LegStatuses legs_;

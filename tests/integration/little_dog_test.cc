@@ -32,7 +32,7 @@ TEST(LittleDog, CrossesLowBlocksOneLegAtATimeAndReplays) {
 
 // The README's board of slabs, on two of its twenty seeds.
 TEST(LittleDog, CrossesABoardOfSlabs) {
-  for (const char* seed : {"5", "20"}) {
+  for (const char* seed : {"2", "5"}) {
     const Scratch scratch;
     const ProgramResult result = run_program(
         "surefoot run --robot littledog --world rocks:flat --mission cross --record off "

@@ -28,6 +28,7 @@ inline control::ControlConfig static_walk_config() {
   c.static_walk = {.enabled = true,
                    .shift_s = 0.35,
                    .shift_speed_m_s = 0.15,
+                   .shift_acceleration_m_s2 = 1.5,
                    .swing_s = 0.3,
                    .foot_speed_m_s = 0.5,
                    .max_stride_m = 0.12,

@@ -105,5 +105,19 @@ TEST(MapOffset, NotesOnceAStance) {
   EXPECT_NEAR(feet.offset.offset_m(), 0.01, 1e-7);
 }
 
+TEST(MapOffset, AFootFarAboveItsGroundHangs) {
+  Feet feet;
+  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) feet.land(leg, kMap_m + 0.01);
+  const auto hangs = [&](double sole_m) {
+    return feet.offset.hangs(Vector3(0.1, 0.05, sole_m + kRadius_m), feet.window.get());
+  };
+  EXPECT_FALSE(hangs(kMap_m + 0.01 + 0.0149));
+  EXPECT_TRUE(hangs(kMap_m + 0.01 + 0.0151));
+  EXPECT_FALSE(feet.offset.hangs(Vector3(0.1, 0.05, 1.0), nullptr));
+  feet.under(1).height_m += 0.05F;  // a cell beside it
+  EXPECT_FALSE(hangs(kMap_m + 0.05));
+  EXPECT_FALSE(feet.offset.hangs(Vector3(5.0, 0.05, 1.0), feet.window.get()));
+}
+
 }  // namespace
 }  // namespace surefoot::control

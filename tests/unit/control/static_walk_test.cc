@@ -174,6 +174,50 @@ TEST(StaticWalk, AStandingFootWithoutGroundGoesDownUntilItFeelsSome) {
   EXPECT_TRUE(world.walk->at_rest());
 }
 
+// In the shift before the first step, told to `happen` at its half.
+template <class Happen>
+StaticWalkWorld halfway_shifted(const Happen& happen) {
+  StaticWalkWorld world;
+  for (int i = 0; i < 300; ++i) world.tick({}, false);
+  for (int i = 0; i < 40; ++i) world.tick(forward(0.06), true);
+  EXPECT_EQ(world.in_the_air(), 0);
+  EXPECT_FALSE(world.walk->at_rest());
+  happen(world);
+  return world;
+}
+
+// A foot that slides while the trunk leans on it: back over all four.
+TEST(StaticWalk, ASlipDuringAShiftBringsTheTrunkBackOverItsFeet) {
+  StaticWalkWorld world = halfway_shifted([](StaticWalkWorld& w) {
+    w.state.feet[robot::kFrontLeft].p_O_m += Vector3(0.014, 0.0, 0.0);
+  });
+  world.tick(forward(0.06), true);
+  EXPECT_EQ(world.walk->counters().slipped, 1U);
+  EXPECT_EQ(world.walk->counters().retreated, 1U);
+  for (int i = 0; i < 1000 && !world.walk->at_rest(); ++i) world.tick({}, false);
+  ASSERT_TRUE(world.walk->at_rest());
+  EXPECT_EQ(world.walk->counters().steps, 0U);
+  Vector2 middle = Vector2::Zero();
+  for (const estimation::FootState& foot : world.state.feet) middle += 0.25 * foot.p_O_m.head<2>();
+  EXPECT_LT((world.centre_O_m() - middle).norm(), 0.008);
+  for (int i = 0; i < 3000; ++i) world.tick(forward(0.06), true);
+  EXPECT_GE(world.walk->counters().steps, 4U);
+}
+
+// One that loses its ground is waited for, then the trunk goes back.
+TEST(StaticWalk, AShiftWaitsForAFootThatLostItsGround) {
+  StaticWalkWorld world = halfway_shifted(
+      [](StaticWalkWorld& w) { w.state.feet[robot::kFrontLeft].in_contact = false; });
+  for (int i = 0; i < 20; ++i) world.tick(forward(0.06), true);
+  const Vector2 waits = world.centre_O_m();
+  for (int i = 0; i < 20; ++i) world.tick(forward(0.06), true);
+  EXPECT_LT((world.centre_O_m() - waits).norm(), 0.002);
+  EXPECT_EQ(world.walk->counters().retreated, 0U);
+  for (int i = 0; i < 150; ++i) world.tick(forward(0.06), true);
+  EXPECT_EQ(world.walk->counters().retreated, 1U);
+  EXPECT_EQ(world.in_the_air(), 0);
+}
+
 // Legs would lift off over a trunk that still runs towards the side that they leave.
 TEST(StaticWalk, NoFootLiftsBeforeTheCapturePointIsOverTheOthers) {
   ControlConfig config = tests::static_walk_config();
