@@ -157,7 +157,7 @@ struct StaticWalkConfig {
   double rough_share = 0;    // to this share
   double caution = 0;        // share of its speed at which the trunk shifts after a mishap,
   int cautious_steps = 0;    // for so many steps
-  double slip_m = 0;         // a standing foot moved by more: the one in the air comes down
+  double slip_m = 0;         // a standing foot moved by more: the step is broken off
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {

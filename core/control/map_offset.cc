@@ -43,9 +43,12 @@ void MapOffset::update(const estimation::RobotState& state,
 
 bool MapOffset::hangs(const Vector3& foot_O_m, const mapping::MapWindow* window) const {
   if (window == nullptr) return false;
-  const Result<double> ground_m = mapping::highest_ground_m(*window, foot_O_m[0], foot_O_m[1]);
+  const Result<mapping::CellIndex> under = window->locate(foot_O_m[0], foot_O_m[1]);
+  if (!under.ok()) return false;
+  const Result<float> ground_m = mapping::highest_ground_m(*window, under.value());
   if (!ground_m.ok()) return false;
-  return foot_O_m[2] - foot_radius_m_ - offset_m_ - ground_m.value() > kHangs_m;
+  const double above_m = foot_O_m[2] - foot_radius_m_ - offset_m_;
+  return above_m - static_cast<double>(ground_m.value()) > kHangs_m;
 }
 
 // Of the notes there are: the middle one, or the mean of the middle two.

@@ -11,6 +11,12 @@ constexpr double kLost_s = 0.03;
 
 }  // namespace
 
+planning::Feet feet_of(const estimation::RobotState& state) {
+  planning::Feet feet;
+  for (std::size_t i = 0; i < robot::kLegs; ++i) feet[i] = state.feet[i].p_O_m;
+  return feet;
+}
+
 void StandingFeet::reset(const SwingConfig& swing, const StaticWalkConfig& walk) {
   swing_ = swing;
   walk_ = walk;
@@ -20,7 +26,7 @@ void StandingFeet::reset(const SwingConfig& swing, const StaticWalkConfig& walk)
 }
 
 void StandingFeet::take(const estimation::RobotState& state) {
-  for (std::size_t i = 0; i < robot::kLegs; ++i) places_O_m_[i] = state.feet[i].p_O_m;
+  places_O_m_ = feet_of(state);
   taken_O_m_ = places_O_m_;
   lost_s_.fill(0);
 }

@@ -21,6 +21,8 @@
 
 namespace surefoot::control {
 
+planning::Feet feet_of(const estimation::RobotState& state);
+
 class StandingFeet {
  public:
   void reset(const SwingConfig& swing, const StaticWalkConfig& walk);

@@ -206,22 +206,24 @@ bool StaticWalk::may_lift(const estimation::RobotState& state) const {
   return ok(region.add(triangle, margin_m)) && region.contains(capture_point_O_m(state));
 }
 
+// Of the feet that stand while the leg of that turn is in the air.
+bool StaticWalk::is_beyond(std::size_t turn, const Vector2& capture_point_O_m) const {
+  planning::SupportRegion region;
+  return ok(region.add(planning::standing_triangle(feet_.places_O_m(), turn), -kTipping_m)) &&
+         !region.contains(capture_point_O_m);
+}
+
+bool StaticWalk::is_tipping(const estimation::RobotState& state) const {
+  return is_beyond(turn_, capture_point_O_m(state));
+}
+
 // Inside the triangle of any three feet it is inside that of all four.
 bool StaticWalk::is_tipping_over_all(const estimation::RobotState& state) const {
   const Vector2 capture_point = capture_point_O_m(state);
   for (std::size_t turn = 0; turn < robot::kLegs; ++turn) {
-    planning::SupportRegion region;
-    if (!ok(region.add(planning::standing_triangle(feet_.places_O_m(), turn), -kTipping_m)))
-      return false;
-    if (region.contains(capture_point)) return false;
+    if (!is_beyond(turn, capture_point)) return false;
   }
   return true;
-}
-
-bool StaticWalk::is_tipping(const estimation::RobotState& state) const {
-  planning::SupportRegion region;
-  return ok(region.add(planning::standing_triangle(feet_.places_O_m(), turn_), -kTipping_m)) &&
-         !region.contains(capture_point_O_m(state));
 }
 
 // The legs are asked in their order, one a tick; one without a place is passed over. Where none has
@@ -369,8 +371,9 @@ void StaticWalk::swing(const estimation::RobotState& state, const mapping::MapWi
     }
   } else {
     status.searched_m += config_.swing.search_speed_m_s * step_s;
-    if (foot.in_contact)
-      return map_offset_.hangs(foot.p_O_m, window) ? go_back(state) : put_down(state);
+    const bool hangs = foot.in_contact && map_offset_.hangs(foot.p_O_m, window);
+    if (foot.in_contact && !hangs) return put_down(state);
+    if (hangs) return go_back(state);
     const double lowest_m = std::min(status.path.lift_off_O_m[2], status.path.landing_O_m[2]);
     const double depth_m = config_.swing.search_depth_m + status.anchor_O_m[2] - lowest_m;
     if (status.searched_m >= depth_m) return go_back(state);
@@ -473,14 +476,12 @@ void StaticWalk::hold_feet(const BodyTask& body) {
 }
 
 void StaticWalk::share_load(const estimation::RobotState& state, const Vector3& force_O_N) {
-  planning::Feet feet;
   LoadShares shares{};
   for (std::size_t i = 0; i < robot::kLegs; ++i) {
-    feet[i] = state.feet[i].p_O_m;
     if (legs_[i].mode == LegMode::kStance) shares[i] = load_[i];
   }
   const Vector3 centre = state.p_OB_m + state.R_OB * whole_body_.dynamics().centroid().p_B_m;
-  const auto forces = control::share_load(feet, shares, centre, force_O_N);
+  const auto forces = control::share_load(feet_of(state), shares, centre, force_O_N);
   for (std::size_t i = 0; i < robot::kLegs; ++i) legs_[i].force_O_N = forces[i];
 }
 

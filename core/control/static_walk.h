@@ -47,7 +47,7 @@ struct StaticWalkCounters {
   std::uint64_t steps = 0;
   std::uint64_t missed = 0;       // no ground where it should be: the foot went back
   std::uint64_t narrow = 0;       // the margin had to be cut to find room over the feet
-  std::uint64_t slipped = 0;      // a standing foot gave way while another was in the air
+  std::uint64_t slipped = 0;      // a standing foot gave way during a shift or a swing
   std::uint64_t lowered = 0;      // a stance leg could not have reached: the trunk was lowered
   std::uint64_t tipped = 0;       // the trunk went over its feet: the one in the air came down
   std::uint64_t passed_over = 0;  // a leg had no foothold, and another stepped
@@ -136,6 +136,7 @@ class StaticWalk {
   bool is_tipping(const estimation::RobotState& state) const;
   void shift(const estimation::RobotState& state, const mapping::MapWindow* window, double step_s);
   bool must_retreat(const estimation::RobotState& state, double step_s);
+  bool is_beyond(std::size_t turn, const Vector2& capture_point_O_m) const;
   bool is_tipping_over_all(const estimation::RobotState& state) const;
   void retreat();
   void set_duration();

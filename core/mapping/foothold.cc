@@ -118,14 +118,11 @@ Result<Foothold> find_foothold(const MapWindow& window, const FootholdQuery& que
   return best;
 }
 
-Result<double> highest_ground_m(const MapWindow& window, double x_O_m, double y_O_m) {
-  const Result<CellIndex> index = window.locate(x_O_m, y_O_m);
-  if (!index.ok()) return index.status();
-  double highest_m = 0;
+Result<float> highest_ground_m(const MapWindow& window, CellIndex centre) {
+  float highest_m = 0;
   bool found = false;
-  for_cells_under_foot(window, index.value(), [&](CellIndex, const WindowCell& cell) {
-    const auto height_m = static_cast<double>(cell.height_m);
-    if (!found || height_m > highest_m) highest_m = height_m;
+  for_cells_under_foot(window, centre, [&](CellIndex, const WindowCell& cell) {
+    if (!found || cell.height_m > highest_m) highest_m = cell.height_m;
     found = true;
   });
   if (!found) return Status::kNotFound;

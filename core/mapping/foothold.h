@@ -58,8 +58,8 @@ void for_cells_under_foot(const MapWindow& window, CellIndex centre, Visit&& vis
   }
 }
 
-// The highest of them. Errors as MapWindow::locate; kNotFound: none has a height.
-Result<double> highest_ground_m(const MapWindow& window, double x_O_m, double y_O_m);
+// The highest of them. kNotFound: none has a height.
+Result<float> highest_ground_m(const MapWindow& window, CellIndex centre);
 
 // Height of the ground under a foot at a place around which the ground bears feet everywhere: the
 // mean as in Foothold::z_O_m. Errors as MapWindow::locate; kNotFound: not steppable, or something

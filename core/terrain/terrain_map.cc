@@ -16,12 +16,8 @@ void TerrainMap::raise_crests() {
   for (std::int32_t iy = 0; iy < mapping::kWindowSide; ++iy) {
     for (std::int32_t ix = 0; ix < mapping::kWindowSide; ++ix) {
       const mapping::CellIndex middle = ground.first + mapping::CellIndex{ix, iy};
-      float& crest = crest_m[ground.place(middle)];
-      crest = kNoCrest_m;
-      mapping::for_cells_under_foot(ground, middle,
-                                    [&](mapping::CellIndex, const mapping::WindowCell& cell) {
-                                      if (cell.height_m > crest) crest = cell.height_m;
-                                    });
+      const Result<float> highest_m = mapping::highest_ground_m(ground, middle);
+      crest_m[ground.place(middle)] = highest_m.ok() ? highest_m.value() : kNoCrest_m;
     }
   }
 }

@@ -75,10 +75,11 @@ double searched_m(const robot::RobotModel& model, const terrain::TerrainMap& map
   };
   const auto look_beside = [&](const Vector3& p_B, double radius_m) {
     const Vector3 p_O = robot.R_OB * p_B + robot.p_OB_m;
-    const Result<double> ground = mapping::highest_ground_m(map.ground, p_O[0], p_O[1]);
+    const mapping::CellIndex under = mapping::cell_index(p_O[0], p_O[1], map.ground.cell_size_m);
+    const Result<float> ground = mapping::highest_ground_m(map.ground, under);
     if (!ground.ok()) return;
     const double under_m = p_O[2] - radius_m - kLegMargin_m;
-    deepest_m = std::max(deepest_m, ground.value() + offset_m - under_m);
+    deepest_m = std::max(deepest_m, static_cast<double>(ground.value()) + offset_m - under_m);
   };
   constexpr int kParts = 100;
   for (int i = 0; i <= kParts; ++i) {
@@ -126,6 +127,34 @@ TEST(Clearance, FindsMostOfWhatManyPointsFindAndNeverMore) {
   RecordProperty("touching", touching);
   RecordProperty("found", found);
   RecordProperty("mean_missed_um", static_cast<int>(1e6 * missed_m / touching));
+}
+
+// Against nine look-ups by hand, at the window's borders and around holes as well.
+TEST(Clearance, TheMapKnowsTheHighestOfNine) {
+  Random random(3);
+  auto map = blocks(random);
+  for (std::size_t i = 0; i < map->ground.cells.size(); i += 3) {
+    map->ground.cells[i] = mapping::WindowCell{};
+  }
+  for (std::size_t i = 3000; i < 4000; ++i) map->ground.cells[i] = mapping::WindowCell{};
+  map->raise_crests();
+  int none = 0;
+  for (int row = 0; row < 100; ++row) {
+    for (int column = 0; column < 100; ++column) {
+      float highest_m = terrain::TerrainMap::kNoCrest_m;
+      for (int y = std::max(row - 1, 0); y <= std::min(row + 1, 99); ++y) {
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, 99); ++x) {
+          const mapping::WindowCell& cell =
+              map->ground.cells[static_cast<std::size_t>(100 * y + x)];
+          if (cell.has_height()) highest_m = std::max(highest_m, cell.height_m);
+        }
+      }
+      none += highest_m == terrain::TerrainMap::kNoCrest_m ? 1 : 0;
+      ASSERT_EQ(map->crest_m[static_cast<std::size_t>(100 * row + column)], highest_m)
+          << row << ' ' << column;
+    }
+  }
+  EXPECT_GT(none, 700);
 }
 
 // A plane that rises: the lowest point of the trunk, the lowest of the legs.
