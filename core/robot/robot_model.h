@@ -217,6 +217,32 @@ struct StereoCameraSpecification {
   }
 };
 
+// A planar laser scanner: beams in the x-y plane of its housing L, counter-clockwise.
+struct LidarSpecification {
+  SensorMount mount;
+  std::uint16_t beams = 0;
+  double view_rad = 0;  // from the first beam to the last, symmetric about x
+  double rate_Hz = 0;   // 0: the robot has none
+  double min_range_m = 0;
+  double max_range_m = 0;
+  double range_noise_m = 0;        // one sigma
+  double beam_divergence_rad = 0;  // full angle: what makes mixed pixels
+
+  double angle_step_rad() const { return beams < 2 ? 0.0 : view_rad / (beams - 1); }
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.group("mount", self.mount);
+    visit.integer("beams", self.beams, {2, 1081}, "of one scan");
+    visit.real("view_rad", self.view_rad, {0.1, 6.2}, "from the first beam to the last");
+    visit.real("rate_Hz", self.rate_Hz, {0.0, 100.0}, "scans per second; 0: no scanner");
+    visit.real("min_range_m", self.min_range_m, {0.01, 5.0}, "nearest return");
+    visit.real("max_range_m", self.max_range_m, {1.0, 200.0}, "farthest return");
+    visit.real("range_noise_m", self.range_noise_m, {0.0, 0.5}, "one sigma");
+    visit.real("beam_divergence_rad", self.beam_divergence_rad, {0.0, 0.1}, "full angle");
+  }
+};
+
 struct JointRange {
   double min_rad = 0;
   double max_rad = 0;
@@ -245,6 +271,7 @@ struct RobotModel {
   DepthCameraSpecification depth_camera;
   TrackingCameraSpecification tracking_camera;
   StereoCameraSpecification stereo_camera;
+  LidarSpecification lidar;
 
   double total_mass_kg() const {
     double rotors = 0;

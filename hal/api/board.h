@@ -5,6 +5,7 @@
 #include "hal/api/can_port.h"
 #include "hal/api/clock.h"
 #include "hal/api/depth_camera_port.h"
+#include "hal/api/gait_port.h"
 #include "hal/api/imu_port.h"
 #include "hal/api/lidar_port.h"
 #include "hal/api/operator_port.h"
@@ -18,6 +19,7 @@ struct Board {
   Clock* clock = nullptr;      // logical time of the ticks
   Clock* stopwatch = nullptr;  // real time, for execution-time statistics only
   CanPort* can = nullptr;
+  GaitPort* gait = nullptr;  // in place of can
   ImuPort* imu = nullptr;
   DepthCameraPort* depth_camera = nullptr;
   LidarPort* lidar = nullptr;
