@@ -60,17 +60,22 @@ void GridSearch::prepare(const CostMap& map, const Ends& ends) {
   open_ = 0;
   towards_ = ends.towards;
   least_cost_ = kLethalCost;
+  offset_ = 0;
   for (std::uint32_t i = 0; i < cells; ++i) {
     way_cost_[i] = kNoWay;
     end_cost_[i] = kNoWay;
     from_[i] = kNowhere;
     if (map.cost(i) < least_cost_) least_cost_ = map.cost(i);
   }
+  std::uint32_t excess = kNoWay;
   for (const End& end : ends.list) {
     // Never below the heuristic: that is what keeps it admissible.
     const std::uint32_t bound = heuristic(map.cell(end.cell));
-    end_cost_[end.cell] = end.cost > bound ? end.cost : bound;
+    const std::uint32_t cost = end.cost > bound ? end.cost : bound;
+    end_cost_[end.cell] = cost;
+    if (cost - bound < excess) excess = cost - bound;
   }
+  offset_ = excess;
 }
 
 bool GridSearch::expand(const CostMap& map, std::uint32_t from, std::uint32_t way_cost) {
@@ -85,7 +90,7 @@ bool GridSearch::expand(const CostMap& map, std::uint32_t from, std::uint32_t wa
     if (cost == kLethalCost || (from_[cell] & kClosed) != 0) continue;
     if (i >= 4 && !(free[i - 4] && free[(i - 3) % 4])) continue;
     const std::uint32_t there = way_cost + cost * (i < 4 ? kStraight : kAcross);
-    if (there >= way_cost_[cell] || there > kMaxReachable) continue;
+    if (there >= way_cost_[cell] || there > kMaxReachable - offset_) continue;
     way_cost_[cell] = there;
     from_[cell] = static_cast<std::uint8_t>(i);
     if (!push(key(there + heuristic(to), cell))) return false;

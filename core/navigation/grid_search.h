@@ -6,7 +6,8 @@
 // A step across a corner needs both cells beside it free: the robot is not a point. The heuristic,
 // kMinCost-like times the octile distance to `towards`, is admissible and consistent as long as
 // each end costs at least that. Whole numbers only; of equal cells the one of the lower index goes
-// first. Cost found = Dijkstra's cost, always.
+// first. Cost found = Dijkstra's cost, always. What the ends cost more than that, the cheapest of
+// them, is added to the heuristic everywhere, which leaves it consistent.
 //
 // Bounds: each cell is closed once; the open list holds kMaxOpen entries. When it is full, or
 // max_closed cells are closed, the search ends `partial` with the path to the closed cell that the
@@ -68,11 +69,14 @@ class GridSearch {
   bool push(std::uint64_t key);
   std::uint64_t pop();
   bool expand(const CostMap& map, std::uint32_t from, std::uint32_t steps_cost);
-  std::uint32_t heuristic(Cell cell) const { return least_cost_ * octile(cell, towards_); }
+  std::uint32_t heuristic(Cell cell) const {
+    return least_cost_ * octile(cell, towards_) + offset_;
+  }
   void trace(const CostMap& map, std::uint32_t start, std::uint32_t end, RawPath& path_O_m,
              SearchResult& result);
 
-  std::uint32_t least_cost_ = 0;
+  std::uint32_t least_cost_ = 0;  // of any cell of the map
+  std::uint32_t offset_ = 0;
   Cell towards_;
   std::array<std::uint32_t, kMaxCells> way_cost_{};
   std::array<std::uint32_t, kMaxCells> end_cost_{};

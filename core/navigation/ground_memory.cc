@@ -52,9 +52,9 @@ Ground GroundMemory::ground(Cell cell) const {
   const std::uint8_t known = cells_[index(cell)];
   const std::uint8_t lethal = known & kLethalBits;
   if (lethal == kLethalBits) return Ground::kBlocked;
-  std::int32_t count = 0;
-  for (std::int32_t i = 0; i < kFinePerWay * kFinePerWay; ++i) count += (lethal >> i) & 1;
-  if (2 * count >= kFinePerWay * kFinePerWay) return Ground::kTight;
+  static_assert(kFinePerWay == 2, "the table counts the bits of 0 to 15");
+  constexpr std::array<std::uint8_t, 16> kCount{0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+  if (kCount[lethal] >= 2) return Ground::kTight;
   return known == 0 ? Ground::kUnknown : Ground::kFree;
 }
 

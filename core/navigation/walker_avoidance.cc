@@ -8,7 +8,7 @@ namespace {
 constexpr std::array<double, 5> kShareOf{1.0, 0.75, 0.5, 0.25, 0.0};
 constexpr double kHysteresis_m = 0.10;  // more room asked for before going faster again
 constexpr double kStepAside_m = 0.8;    // of free ground that a step aside needs
-constexpr double kMaxAge_s = 3.0;       // since it was seen; then it may be anywhere
+constexpr double kMaxAge_s = 5.0;       // since it was seen; then it may be anywhere
 constexpr double kGap_m = 0.05;         // kept from what stands
 
 }  // namespace

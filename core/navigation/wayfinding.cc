@@ -25,12 +25,17 @@ std::uint32_t at(std::int32_t x, std::int32_t y) {
 
 void WayField::weigh(double unknown_factor, bool lenient) {
   const auto unknown = static_cast<std::uint16_t>(kSeenCost * unknown_factor + 0.5);
+  for (std::int32_t y = 0; y < kWaySide; ++y) {
+    for (std::int32_t x = 0; x < kWaySide; ++x) {
+      ground_[at(x, y)] = memory_->ground({low_.x + x, low_.y + y});
+    }
+  }
   const auto blocks = [this](std::int32_t x, std::int32_t y) {
-    return in_square(x, y) && memory_->ground({low_.x + x, low_.y + y}) >= Ground::kTight;
+    return in_square(x, y) && ground_[at(x, y)] >= Ground::kTight;
   };
   for (std::int32_t y = 0; y < kWaySide; ++y) {
     for (std::int32_t x = 0; x < kWaySide; ++x) {
-      const Ground ground = memory_->ground({low_.x + x, low_.y + y});
+      const Ground ground = ground_[at(x, y)];
       std::uint16_t weight = ground == Ground::kUnknown ? unknown : kSeenCost;
       if (ground == Ground::kBlocked) weight = 0;
       if (ground == Ground::kTight) weight = lenient ? kTightCost : 0;

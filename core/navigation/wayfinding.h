@@ -48,6 +48,7 @@ class WayField {
   std::size_t waiting_ = 0;
   Cell low_;
   double cell_m_ = 1;
+  std::array<Ground, kCells> ground_{};
   std::array<std::uint16_t, kCells> weights_{};  // 0: impassable; in rows from the low corner
   std::array<std::uint32_t, kCells> costs_{};
   std::array<std::uint32_t, kCells> next_{};
