@@ -1,80 +1,30 @@
 #include "sim_hal/simulator.h"
 
-#include <ode/ode.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "core/math/gravity.h"
-#include "sim_hal/robot/articulation.h"
-#include "sim_hal/robot/contacts.h"
+#include "sim_hal/plant.h"
+#include "sim_hal/robot/fast_plant.h"
+#include "sim_hal/robot/footprint.h"
+#include "sim_hal/robot/legged_plant.h"
 #include "sim_hal/robot/ode_runtime.h"
-#include "sim_hal/robot/pushes.h"
-#include "sim_hal/robot/random_pose.h"
-#include "sim_hal/robot/sim_can_port.h"
 #include "sim_hal/sensors/sim_depth_camera_port.h"
 #include "sim_hal/sensors/sim_imu_port.h"
+#include "sim_hal/sensors/sim_lidar_port.h"
 #include "sim_hal/sensors/sim_pose_port.h"
 #include "sim_hal/sensors/sim_stereo_camera_port.h"
 #include "sim_hal/world/obstacle.h"
+#include "sim_hal/world/solid_index.h"
 #include "sim_hal/world/terrain.h"
 #include "sim_hal/world/terrain_index.h"
+#include "sim_hal/world/walkers.h"
+#include "sim_hal/world_truth.h"
 
 namespace surefoot::sim {
 
 namespace {
-
-constexpr double kSlipThreshold_m_s = 0.005;  // below: creep of the contact solver
-
-// A random start: let go at this clearance; at rest when slower than this for kQuiet_s.
-constexpr std::uint64_t kStartStream = 6;
-constexpr int kMaxPoseDraws = 1000;
-constexpr double kDropHeight_m = 0.02;
-constexpr double kMaxFall_s = 15.0;
-constexpr double kQuiet_s = 0.3;
-constexpr double kQuietJoint_rad_s = 0.02;
-constexpr double kQuietTrunk_rad_s = 0.002;
-
-// Under a robot that is set down at (x, 0), whichever way it lies.
-double highest_ground_m(const TerrainIndex& index, double x_m) {
-  constexpr double kReach_m = 0.6;
-  constexpr double kAcross_m = 0.5;
-  return std::max(0.0, index.max_height_m(x_m - kReach_m, -kAcross_m, x_m + kReach_m, kAcross_m));
-}
-
-std::array<double, 3> array(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-
-std::array<double, 4> quaternion(dBodyID body) {
-  const dReal* q = dBodyGetQuaternion(body);
-  return {q[0], q[1], q[2], q[3]};
-}
-
-// The ODE world; owns bodies and joints.
-class OdeWorld {
- public:
-  OdeWorld() {
-    start_ode();
-    id_ = dWorldCreate();
-    dWorldSetGravity(id_, 0, 0, -kGravity_m_s2);
-    dWorldSetAutoDisableFlag(id_, 0);
-    dWorldSetERP(id_, 0.2);
-    dWorldSetCFM(id_, 1e-10);
-    dWorldSetMaxAngularSpeed(id_, dInfinity);
-    dWorldStepReserveInfo reserve{};
-    reserve.struct_size = sizeof reserve;
-    reserve.reserve_factor = 1.5F;
-    reserve.reserve_minimum = 8U << 20U;  // enough for every contact at once: no growth later
-    dWorldSetStepMemoryReservationPolicy(id_, &reserve);
-  }
-  ~OdeWorld() { dWorldDestroy(id_); }
-  OdeWorld(const OdeWorld&) = delete;
-  OdeWorld& operator=(const OdeWorld&) = delete;
-  dWorldID id() const { return id_; }
-
- private:
-  dWorldID id_;
-};
 
 void check(const SimulatorConfig& config, const robot::RobotModel& robot) {
   const double step_s = config.physics.step_s;
@@ -94,6 +44,15 @@ void check(const SimulatorConfig& config, const robot::RobotModel& robot) {
   if (robot.stereo_camera.present && !config.stereo.present) {
     throw SimulatorError("simulator: the robot has a stereo camera, but there is no group stereo");
   }
+  if (robot.lidar.rate_Hz > 0 && !config.lidar.present) {
+    throw SimulatorError("simulator: the robot has a laser scanner, but there is no group lidar");
+  }
+  if (robot.lidar.beams > hal::kMaxLidarBeams) {
+    throw SimulatorError("simulator: robot.lidar.beams above what a scan holds");
+  }
+  if (config.lidar.latency_s * robot.lidar.rate_Hz > SimLidarPort::kQueue - 2) {
+    throw SimulatorError("simulator: lidar.latency_s is longer than the scan queue");
+  }
   if (config.tracking.latency_s * robot.tracking_camera.rate_Hz > SimPosePort::kQueue - 1) {
     throw SimulatorError("simulator: tracking.latency_s is longer than the sample queue");
   }
@@ -109,70 +68,86 @@ void check(const SimulatorConfig& config, const robot::RobotModel& robot) {
   }
 }
 
+struct PlantWorld {
+  const Terrain& terrain;
+  const TerrainIndex& index;
+  const SolidIndex& solids;
+  const Walkers& walkers;
+};
+
+std::unique_ptr<Plant> make_plant(const robot::RobotModel& robot, const SimulatorConfig& config,
+                                  const PlantWorld& world, std::uint64_t seed) {
+  if (config.plant == PlantKind::kFast) {
+    return std::make_unique<FastPlant>(robot, config, world.index, world.solids, world.walkers,
+                                       seed);
+  }
+  return std::make_unique<LeggedPlant>(robot, config, world.terrain, world.index, world.solids,
+                                       seed);
+}
+
+double width_m(const robot::RobotModel& robot) { return 2 * Footprint(robot).half_width_m; }
+
 }  // namespace
 
 struct Simulator::Implementation final : hal::Clock {
   Implementation(const robot::RobotModel& robot_model, const WorldSpec& world,
                  const SimulatorConfig& configuration, std::uint64_t seed)
-      : config(configuration),
+      : robot(robot_model),
         step{std::llround(configuration.physics.step_s * 1e9)},
-        terrain(make_terrain(world, seed)),
+        goal_x_m(goal_of(world, seed)),
+        terrain(make_terrain(world, seed, width_m(robot_model))),
         index(terrain),
-        robot(ode.id(), robot_model, configuration.start, step.seconds()),
-        contacts(ode.id(), robot, terrain, index, configuration.physics),
-        pushes(configuration.scenario.push, seed),
+        solids(terrain.solids, terrain.saplings),
+        walkers(terrain),
+        plant(make_plant(robot_model, configuration, {terrain, index, solids, walkers}, seed)),
         obstacle(configuration.scenario.obstacle, terrain.obstacle, seed),
-        can(robot_model, configuration.can, configuration.faults, seed),
         imu(robot_model.imu, configuration.imu, configuration.faults, seed),
         camera(robot_model.depth_camera, configuration.depth, configuration.faults, index, seed),
+        lidar(robot_model.lidar, configuration.lidar, configuration.faults, index, solids, seed),
         tracking(robot_model.tracking_camera, configuration.tracking, configuration.faults, seed,
-                 robot.trunk_position_m(), robot.trunk_rotation()) {
-    dWorldSetContactMaxCorrectingVel(ode.id(), configuration.physics.max_correcting_velocity_m_s);
+                 plant->position_m(), plant->rotation()) {
     if (robot_model.stereo_camera.present) {
       stereo = std::make_unique<SimStereoCameraPort>(
           robot_model.stereo_camera, configuration.stereo, configuration.faults, index, seed);
     }
     if (obstacle.exists()) {
       index.show(&obstacle.box());
-      contacts.place_obstacle(obstacle.box());
+      plant->place_obstacle(obstacle.box());
     }
-    set_down(seed);
-    mount_velocity_W = robot.trunk_point_velocity_W(imu.mount_B_m());
-    exchange_can();
+    if (!solids.empty()) index.show(&solids);
+    if (!walkers.solids().empty()) {
+      index.show(walkers.solids());
+      plant->place_walkers(walkers);
+    }
+    plant->set_down(seed);
+    mount_velocity_W = plant->point_velocity_W(imu.mount_B_m());
   }
 
   TimeNs do_now() const override { return now; }
   Status do_wait_until(TimeNs deadline) override;
 
-  void set_down(std::uint64_t seed);
-  void come_to_rest();
   void advance();
-  void step_bodies();
-  void exchange_can();
   void advance_imu();
-  std::array<Capsule, 3 * robot::kLegs> leg_shapes() const;
   void advance_cameras();
-  void track_slip();
+  void advance_lidar();
+  double clearance_m() const;
 
-  SimulatorConfig config;
+  robot::RobotModel robot;
   TimeNs step;
   TimeNs now;
-  OdeWorld ode;
+  double goal_x_m;
   Terrain terrain;
   TerrainIndex index;
-  Articulation robot;
-  Contacts contacts;
-  Pushes pushes;
+  SolidIndex solids;
+  Walkers walkers;
+  std::unique_ptr<Plant> plant;
   Obstacle obstacle;
-  SimCanPort can;
   SimImuPort imu;
   SimDepthCameraPort camera;
   std::unique_ptr<SimStereoCameraPort> stereo;  // null: the robot has none
+  SimLidarPort lidar;
   SimPosePort tracking;
   Vector3 mount_velocity_W;
-  Vector3 trunk_force_N = Vector3::Zero();
-  std::array<double, robot::kJoints> torques_Nm{};
-  std::array<double, robot::kLegs> slip_m{};
   std::uint64_t steps = 0;
   std::uint64_t obstacle_steps = 0;
 };
@@ -183,128 +158,57 @@ Status Simulator::Implementation::do_wait_until(TimeNs deadline) {
   return Status::kOk;
 }
 
-void Simulator::Implementation::exchange_can() {
-  std::array<double, robot::kJoints> positions;
-  std::array<double, robot::kJoints> velocities;
-  for (std::size_t i = 0; i < robot::kJoints; ++i) {
-    positions[i] = robot.joint_position_rad(i);
-    velocities[i] = robot.joint_velocity_rad_s(i);
-  }
-  can.advance(now, positions, velocities);
-}
-
 void Simulator::Implementation::advance_imu() {
-  const Vector3 velocity = robot.trunk_point_velocity_W(imu.mount_B_m());
+  const Vector3 velocity = plant->point_velocity_W(imu.mount_B_m());
   const Vector3 acceleration = (velocity - mount_velocity_W) / step.seconds();
   mount_velocity_W = velocity;
-  const Matrix3 to_B = robot.trunk_rotation().transpose();
+  const Matrix3 to_B = plant->rotation().transpose();
   imu.advance(now, step.seconds(), to_B * (acceleration + Vector3(0, 0, kGravity_m_s2)),
-              to_B * robot.trunk_angular_velocity_W());
-}
-
-std::array<Capsule, 3 * robot::kLegs> Simulator::Implementation::leg_shapes() const {
-  const robot::RobotModel& model = robot.model();
-  std::array<Capsule, 3 * robot::kLegs> shapes;
-  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    const std::size_t thigh = body_of(robot::joint_index(leg, 1));
-    const std::size_t shank = body_of(robot::joint_index(leg, 2));
-    const double knee_y = robot::left_sign(leg) * model.knee_offset_m;
-    const Vector3 hip = robot.point_W_m(thigh, Vector3(0, knee_y, 0));
-    const Vector3 knee = robot.point_W_m(shank, Vector3::Zero());
-    const Vector3 foot = robot.point_W_m(shank, Vector3(0, 0, -model.shank_length_m));
-    shapes[3 * leg] = {hip, knee, model.thigh_radius_m};
-    shapes[3 * leg + 1] = {knee, foot, model.shank_radius_m};
-    shapes[3 * leg + 2] = {foot, foot, model.foot_radius_m};
-  }
-  return shapes;
+              to_B * plant->angular_velocity_W());
 }
 
 void Simulator::Implementation::advance_cameras() {
   camera.advance(now);
   if (camera.due(now)) {
-    camera.expose(now, robot.trunk_position_m(), robot.trunk_rotation(), leg_shapes());
+    camera.expose(now, plant->position_m(), plant->rotation(), plant->leg_shapes());
   }
   if (stereo == nullptr) return;
   stereo->advance(now);
   if (stereo->triggered()) {
-    stereo->expose(now, robot.trunk_position_m(), robot.trunk_rotation(), leg_shapes());
+    stereo->expose(now, plant->position_m(), plant->rotation(), plant->leg_shapes());
   }
 }
 
-void Simulator::Implementation::track_slip() {
-  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    const ShapeContact& foot = contacts.shape(Contacts::shape_of(leg, Shape::kFoot));
-    const double speed = foot.slip_velocity_m_s.norm();
-    if (foot.touching && speed > kSlipThreshold_m_s) slip_m[leg] += speed * step.seconds();
-  }
+void Simulator::Implementation::advance_lidar() {
+  if (robot.lidar.rate_Hz <= 0) return;
+  lidar.advance(now, plant->position_m(), plant->rotation(), walkers.solids(),
+                obstacle.exists() ? &obstacle.box() : nullptr);
 }
 
-void Simulator::Implementation::step_bodies() {
-  contacts.collide();
-  dWorldStep(ode.id(), step.seconds());
-  contacts.collect();
-  robot.update();
+double Simulator::Implementation::clearance_m() const {
+  if (solids.empty() && walkers.solids().empty()) return kMaxClearance_m;
+  return Footprint(robot)
+      .clearance(plant->position_m(), plant->rotation(), solids, walkers, kMaxClearance_m)
+      .distance_m;
 }
 
-// Before the run begins. A draw in which the robot is inside itself is no pose.
-void Simulator::Implementation::set_down(std::uint64_t seed) {
-  const StartConfig& start = config.scenario.start;
-  if (start.kind == StartConfig::Kind::kFolded) {
-    if (start.x_m != 0.0) {
-      const Vector3 place = robot.trunk_position_m();
-      const double ground_m = highest_ground_m(index, start.x_m);
-      robot.set_down(robot.trunk_rotation(), robot.leg_angles_rad(), place.x() + start.x_m,
-                     place.y(), ground_m + config.start.drop_height_m);
-    }
-    return;
-  }
-  Random random(seed, kStartStream);
-  const double lowest_m = highest_ground_m(index, start.x_m) + kDropHeight_m;
-  for (int draw = 0; draw < kMaxPoseDraws; ++draw) {
-    const Matrix3 R_WB = random_rotation(random);
-    robot.set_down(R_WB, random_legs(robot.model(), random), start.x_m, 0.0, lowest_m);
-    if (contacts.self_overlap_m() == 0.0) break;
-  }
-  come_to_rest();
-}
-
-// Limp, drives off, until nothing has moved for a while.
-void Simulator::Implementation::come_to_rest() {
-  double quiet_s = 0;
-  const auto most = static_cast<int>(kMaxFall_s / step.seconds());
-  for (int i = 0; i < most && quiet_s < kQuiet_s; ++i) {
-    robot.apply({});
-    step_bodies();
-    quiet_s = robot.fastest_joint_rad_s() < kQuietJoint_rad_s &&
-                      robot.trunk_angular_velocity_W().norm() < kQuietTrunk_rad_s
-                  ? quiet_s + step.seconds()
-                  : 0.0;
-  }
-}
-
-// One physics step: torques from the drives at `now`, then everything that happens by now + step.
+// One physics step: everything that happens by now + step.
 void Simulator::Implementation::advance() {
-  torques_Nm = can.torques_Nm(now);
-  robot.apply(torques_Nm);
-  const Matrix3 R_WB = robot.trunk_rotation();
-  const Vector3 left_W = Vector3(-R_WB(1, 0), R_WB(0, 0), 0).normalized();
-  const Vector3 force = trunk_force_N + pushes.force_W_N(now, left_W);
-  if (force.squaredNorm() > 0) {
-    const Vector3 p = robot.trunk_position_m();
-    dBodyAddForceAtPos(robot.body(0), force.x(), force.y(), force.z(), p.x(), p.y(), p.z());
-  }
-  step_bodies();
-  if (contacts.on_obstacle()) ++obstacle_steps;
-  if (obstacle.follow(robot.trunk_position_m().x())) contacts.place_obstacle(obstacle.box());
+  plant->step(now);
+  if (plant->on_obstacle()) ++obstacle_steps;
+  if (obstacle.follow(plant->position_m().x())) plant->place_obstacle(obstacle.box());
   ++steps;
   now = now + step;
-  track_slip();
-  exchange_can();
+  if (!walkers.solids().empty()) {
+    walkers.place(now.seconds());
+    plant->place_walkers(walkers);
+  }
   advance_imu();
-  if (robot.model().tracking_camera.rate_Hz > 0) {
-    tracking.advance(now, robot.trunk_position_m(), robot.trunk_rotation());
+  if (robot.tracking_camera.rate_Hz > 0) {
+    tracking.advance(now, plant->position_m(), plant->rotation());
   }
   advance_cameras();
+  advance_lidar();
 }
 
 Simulator::Simulator(const robot::RobotModel& robot, const WorldSpec& world,
@@ -316,101 +220,68 @@ Simulator::Simulator(const robot::RobotModel& robot, const WorldSpec& world,
 Simulator::~Simulator() = default;
 
 hal::Board Simulator::board() {
+  Implementation& sim = *implementation_;
   hal::Board board;
-  board.clock = implementation_.get();
-  board.can = &implementation_->can;
-  board.imu = &implementation_->imu;
-  const bool sees_depth = implementation_->robot.model().depth_camera.rate_Hz > 0;
-  board.depth_camera = sees_depth ? &implementation_->camera : nullptr;
-  board.stereo_camera = implementation_->stereo.get();
-  const bool tracks = implementation_->robot.model().tracking_camera.rate_Hz > 0;
-  board.pose = tracks ? &implementation_->tracking : nullptr;
+  board.clock = &sim;
+  board.imu = &sim.imu;
+  if (sim.robot.depth_camera.rate_Hz > 0) board.depth_camera = &sim.camera;
+  board.stereo_camera = sim.stereo.get();
+  if (sim.robot.lidar.rate_Hz > 0) board.lidar = &sim.lidar;
+  if (sim.robot.tracking_camera.rate_Hz > 0) board.pose = &sim.tracking;
+  sim.plant->attach(board);
   return board;
 }
 
 Truth Simulator::truth() const {
   const Implementation& sim = *implementation_;
-  const Articulation& robot = sim.robot;
+  const Plant& plant = *sim.plant;
   Truth truth;
   truth.stamp = sim.now;
-  truth.p_WB_m = array(robot.trunk_position_m());
-  truth.q_WB_wxyz = quaternion(robot.body(0));
-  truth.v_WB_m_s = array(robot.trunk_point_velocity_W(Vector3::Zero()));
+  truth.p_WB_m = to_array(plant.position_m());
+  truth.v_WB_m_s = to_array(plant.point_velocity_W(Vector3::Zero()));
   truth.angular_velocity_B_rad_s =
-      array(robot.trunk_rotation().transpose() * robot.trunk_angular_velocity_W());
-  for (std::size_t i = 0; i < robot::kJoints; ++i) {
-    truth.joints[i] = {robot.joint_position_rad(i), robot.joint_velocity_rad_s(i),
-                       sim.torques_Nm[i]};
+      to_array(plant.rotation().transpose() * plant.angular_velocity_W());
+  plant.tell(truth);
+  truth.clearance_m = sim.clearance_m();
+  for (const Solid& walker : sim.walkers.solids()) {
+    const Vector3& p = walker.capsule.a_m;
+    truth.walkers_W_m[truth.walker_count++] = {p.x(), p.y()};
   }
-  const Vector3 foot_m(0, 0, -robot.model().shank_length_m);
-  for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
-    const std::size_t shank = body_of(robot::joint_index(leg, 2));
-    const ShapeContact& contact = sim.contacts.shape(Contacts::shape_of(leg, Shape::kFoot));
-    FootTruth& foot = truth.feet[leg];
-    foot.p_WF_m = array(robot.point_W_m(shank, foot_m));
-    foot.v_WF_m_s = array(robot.point_velocity_W(shank, foot_m));
-    foot.force_W_N = array(contact.force_N);
-    foot.contact = contact.touching;
-    foot.slip_speed_m_s = contact.touching ? contact.slip_velocity_m_s.norm() : 0.0;
-    foot.slip_m = sim.slip_m[leg];
-    truth.leg_contact[leg] = sim.contacts.shape(Contacts::shape_of(leg, Shape::kShank)).touching ||
-                             sim.contacts.shape(Contacts::shape_of(leg, Shape::kThigh)).touching;
-  }
-  truth.trunk_contact = sim.contacts.shape(Contacts::kTrunk).touching;
   truth.obstacle_steps = sim.obstacle_steps;
   if (sim.obstacle.exists()) {
     const TerrainBox& box = sim.obstacle.box();
     truth.obstacle = {box.x_m, box.y_m, std::atan2(box.sin_yaw, box.cos_yaw)};
   }
-  truth.mechanical_energy_J = robot.mechanical_energy_J(kGravity_m_s2);
   return truth;
 }
 
 std::uint64_t Simulator::state_hash() const {
   Fnv64 digest;
-  implementation_->robot.hash(digest);
+  implementation_->plant->hash(digest);
   return digest.value();
 }
 
+double Simulator::ground_height_m(double x_m, double y_m) const {
+  return implementation_->index.height_m(x_m, y_m);
+}
+
 double Simulator::terrain_height_m(double x_m, double y_m) const {
-  const double ground = implementation_->index.height_m(x_m, y_m);
+  double ground =
+      std::max(implementation_->index.height_m(x_m, y_m), implementation_->solids.top_m(x_m, y_m));
+  for (const Solid& walker : implementation_->walkers.solids()) {
+    ground = std::max(ground, top_at(walker, x_m, y_m));
+  }
   const Obstacle& obstacle = implementation_->obstacle;
   if (!obstacle.exists() || !obstacle.box().covers(x_m, y_m)) return ground;
   return std::max(ground, obstacle.box().top_m);
 }
 
 TerrainFigures Simulator::terrain_figures() const {
-  constexpr double kCell_m = 0.01;
-  const auto nx = static_cast<std::size_t>(std::llround(kGoalX_m / kCell_m)) + 1;
-  const auto ny = static_cast<std::size_t>(std::llround(kLaneWidth_m / kCell_m)) + 1;
-  std::vector<double> z(nx * ny);
-  TerrainFigures figures;
-  double sum = 0;
-  double squares = 0;
-  for (std::size_t j = 0; j < ny; ++j) {
-    for (std::size_t i = 0; i < nx; ++i) {
-      const double x = kCell_m * static_cast<double>(i);
-      const double y = kCell_m * static_cast<double>(j) - kLaneWidth_m / 2;
-      const double height = implementation_->index.height_m(x, y);
-      z[j * nx + i] = height;
-      sum += height;
-      squares += height * height;
-      figures.max_height_m = std::max(figures.max_height_m, height);
-      if (i > 0)
-        figures.max_step_m = std::max(figures.max_step_m, std::fabs(height - z[j * nx + i - 1]));
-      if (j > 0)
-        figures.max_step_m = std::max(figures.max_step_m, std::fabs(height - z[(j - 1) * nx + i]));
-    }
-  }
-  const auto count = static_cast<double>(nx * ny);
-  const double mean = sum / count;
-  figures.rms_m = std::sqrt(std::max(0.0, squares / count - mean * mean));
-  const Terrain& terrain = implementation_->terrain;
-  figures.boxes = static_cast<std::uint32_t>(terrain.boxes.size());
-  figures.cover = clutter_cover(terrain);
-  figures.bridged_cells = terrain.bridged_cells;
-  figures.tiles = terrain.tiles;
-  return figures;
+  return figures_of(implementation_->terrain, implementation_->index, implementation_->goal_x_m);
+}
+
+std::vector<SolidTruth> Simulator::solids() const {
+  return outlines_of(implementation_->terrain.solids);
 }
 
 SimulatorCounters Simulator::counters() const {
@@ -419,9 +290,7 @@ SimulatorCounters Simulator::counters() const {
   SimulatorCounters counters;
   counters.steps = sim.steps;
   counters.ode_messages = ode_messages();
-  counters.contacts_dropped = sim.contacts.dropped();
-  counters.replies_lost = sim.can.replies_lost();
-  counters.frames_unanswered = sim.can.frames_unanswered();
+  sim.plant->count(counters);
   counters.depth_rays = depth.rays;
   counters.depth_edge_dropouts = depth.edge_dropouts;
   counters.depth_random_dropouts = depth.random_dropouts;
@@ -433,15 +302,21 @@ SimulatorCounters Simulator::counters() const {
     counters.stereo_exposures_lost = stereo.exposures_lost;
     counters.stereo_rays = stereo.rays;
   }
+  const LidarCounters& lidar = sim.lidar.lidar_counters();
+  counters.lidar_beams = lidar.beams;
+  counters.lidar_mixed = lidar.mixed;
+  counters.lidar_random_dropouts = lidar.random_dropouts;
+  counters.lidar_sapling_returns = lidar.sapling_returns;
+  counters.lidar_no_returns = lidar.no_returns;
+  counters.lidar_scans_lost = lidar.scans_lost;
   counters.imu_samples_lost = sim.imu.lost();
   counters.pose_samples_lost = sim.tracking.pose_counters().lost;
   counters.pose_jumps = sim.tracking.pose_counters().jumps;
-  counters.deepest_self_overlap_m = sim.contacts.deepest_self_overlap_m();
   return counters;
 }
 
 void Simulator::set_trunk_force(const std::array<double, 3>& force_W_N) {
-  implementation_->trunk_force_N = Vector3(force_W_N[0], force_W_N[1], force_W_N[2]);
+  implementation_->plant->set_force(Vector3(force_W_N[0], force_W_N[1], force_W_N[2]));
 }
 
 }  // namespace surefoot::sim

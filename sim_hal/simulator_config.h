@@ -120,6 +120,25 @@ struct StereoImageConfig {
   }
 };
 
+// Of the laser scanner, beside what its specification says.
+struct LidarNoiseConfig {
+  bool present = false;
+  double latency_s = 0;       // from the end of a sweep to delivery
+  double mixed_pixel = 0;     // probability, of a beam on two surfaces up to 2 m apart
+  double random_dropout = 0;  // probability of a beam
+  double sapling_return = 0;  // probability that a sapling as wide as the beam gives an echo
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.real("latency_s", self.latency_s, {0.0, 0.1}, "from the end of a sweep to delivery");
+    visit.real("mixed_pixel", self.mixed_pixel, {0.0, 1.0},
+               "probability, of a beam on two surfaces up to 2 m apart");
+    visit.real("random_dropout", self.random_dropout, {0.0, 1.0}, "probability of a beam");
+    visit.real("sapling_return", self.sapling_return, {0.0, 1.0},
+               "probability that a sapling as wide as the beam gives an echo");
+  }
+};
+
 struct CanConfig {
   double frame_time_s = 0.00012;    // one frame on the wire; commands and replies share the bus
   double reply_loss = 0;            // probability that a reply never arrives
@@ -149,6 +168,8 @@ struct FaultConfig {
   double imu_off_until_s = 0;
   double pose_off_from_s = 0;  // the tracking camera's samples in [from, until) are lost
   double pose_off_until_s = 0;
+  double lidar_off_from_s = 0;  // scans that begin in [from, until) are lost
+  double lidar_off_until_s = 0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -160,6 +181,8 @@ struct FaultConfig {
     visit.real("imu_off_until_s", self.imu_off_until_s, {0.0, 1e6}, "IMU lost until");
     visit.real("pose_off_from_s", self.pose_off_from_s, {0.0, 1e6}, "tracking camera lost from");
     visit.real("pose_off_until_s", self.pose_off_until_s, {0.0, 1e6}, "tracking camera lost until");
+    visit.real("lidar_off_from_s", self.lidar_off_from_s, {0.0, 1e6}, "scanner lost from");
+    visit.real("lidar_off_until_s", self.lidar_off_until_s, {0.0, 1e6}, "scanner lost until");
   }
 };
 
@@ -171,12 +194,18 @@ struct StartPose {
   bool trunk_fixed = false;       // bolted to a stand
 };
 
+// legged: the robot on its legs, behind CAN. fast: a body that follows velocities, without legs.
+enum class PlantKind : std::uint8_t { kLegged = 0, kFast };
+inline constexpr std::array<const char*, 2> kPlantNames{"legged", "fast"};
+
 struct SimulatorConfig {
+  PlantKind plant = PlantKind::kLegged;
   PhysicsConfig physics;
   ImuNoiseConfig imu;
   DepthNoiseConfig depth;
   TrackingNoiseConfig tracking;
   StereoImageConfig stereo;  // where the robot has a stereo camera
+  LidarNoiseConfig lidar;    // where the robot has a scanner
   CanConfig can;
   FaultConfig faults;
   StartPose start;
@@ -184,11 +213,13 @@ struct SimulatorConfig {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
+    visit.choice("plant", self.plant, kPlantNames, "what moves: legs or a body without");
     visit.group("physics", self.physics);
     visit.group("imu", self.imu);
     visit.group("depth", self.depth);
     visit.group("tracking", self.tracking);
     visit.optional("stereo", self.stereo);
+    visit.optional("lidar", self.lidar);
     visit.group("can", self.can);
     visit.group("faults", self.faults);
   }

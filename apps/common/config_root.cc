@@ -235,7 +235,8 @@ void check_gait(const autonomy::AutonomyConfig& config, ConfigIssues& issues) {
                     "true, but the robot walks one leg at a time (control.static_walk.enabled)"});
 }
 
-void take_goal_from_world(Config& config) {
+void take_goal_from_world(Config& config, std::uint64_t seed) {
+  config.world.goal_x_m = sim::goal_of(config.world, seed);
   autonomy::MissionConfig& mission = config.autonomy.mission;
   const bool crosses = mission.kind == autonomy::MissionConfig::Kind::kCross;
   if (crosses && mission.waypoints.empty() && mission.goal_x_m == 0.0) {
@@ -261,7 +262,10 @@ Config load_config_parts(const RunRequest& request, const fs::path& folder, Conf
   if (!request.mission.empty()) {
     add_file("--mission", "missions", request.mission, folder, tree, issues);
   }
-  for (const std::string& set : request.sets) apply_override(tree, set, issues);
+  for (const std::string& set : request.sets) {
+    // The contract's short name.
+    apply_override(tree, set.rfind("plant=", 0) == 0 ? "sim." + set : set, issues);
+  }
   load_motions(tree, folder, issues);
   load_stereo(tree, issues);
   load_terrain(tree, issues);
@@ -274,7 +278,7 @@ Config load_config_parts(const RunRequest& request, const fs::path& folder, Conf
   if (!request.robot.empty() && std::all_of(read.begin(), read.end(), is_missing_group)) {
     check_stereo(tree, config.robot, config.autonomy.stereo, config.sim.stereo.present, read);
   }
-  take_goal_from_world(config);
+  take_goal_from_world(config, request.seed);
   read = without_absent_groups(std::move(read), request, issues);
   drop_what_follows(issues, read);
   issues.insert(issues.end(), read.begin(), read.end());

@@ -329,6 +329,7 @@ struct RobotModel {
     visit.group("imu", self.imu);
     visit.group("depth_camera", self.depth_camera);
     visit.group("tracking_camera", self.tracking_camera);
+    visit.group("lidar", self.lidar);
     visit.optional("stereo_camera", self.stereo_camera);
   }
 };

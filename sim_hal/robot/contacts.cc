@@ -40,15 +40,17 @@ void place_capsule(dGeomID geom, const Vector3& middle) {
 }  // namespace
 
 Contacts::Contacts(dWorldID world, const Articulation& robot, const Terrain& terrain,
-                   const TerrainIndex& index, const PhysicsConfig& config)
+                   const TerrainIndex& index, const SolidIndex& solids, const PhysicsConfig& config)
     : world_(world),
       index_(index),
       config_(config),
       friction_(terrain.friction),
-      grid_(terrain.grid) {
+      grid_(terrain.grid),
+      solids_(solids) {
   make_shapes(robot);
   make_self_pairs();
   make_terrain(terrain);
+  make_solids();
   group_ = dJointGroupCreate(0);
   // ODE keeps a group's arenas when it is emptied: filling it once means no allocation later.
   dContact contact{};
@@ -60,6 +62,8 @@ Contacts::~Contacts() {
   dJointGroupDestroy(group_);
   for (const dGeomID geom : geoms_) dGeomDestroy(geom);
   for (const dGeomID geom : boxes_) dGeomDestroy(geom);
+  for (const dGeomID geom : solid_geoms_) dGeomDestroy(geom);
+  for (const dGeomID geom : walker_geoms_) dGeomDestroy(geom);
   if (obstacle_ != nullptr) dGeomDestroy(obstacle_);
   dGeomDestroy(plane_);
 }
@@ -97,6 +101,63 @@ void Contacts::make_terrain(const Terrain& terrain) {
     boxes_.push_back(make_box(box));
     place_box(boxes_.back(), box);
   }
+}
+
+void Contacts::make_solids() {
+  for (const Solid& solid : solids_.solids()) {
+    if (solid.is_box()) {
+      solid_geoms_.push_back(make_box(solid.box));
+      place_box(solid_geoms_.back(), solid.box);
+      continue;
+    }
+    const Capsule& capsule = solid.capsule;
+    const Vector3 axis = capsule.b_m - capsule.a_m;
+    const Vector3 middle = 0.5 * (capsule.a_m + capsule.b_m);
+    const double length = axis.norm();
+    const dGeomID geom = length > 0 ? dCreateCapsule(nullptr, capsule.radius_m, length)
+                                    : dCreateSphere(nullptr, capsule.radius_m);
+    if (length > 0) {
+      dMatrix3 r{};
+      dRFromZAxis(r, axis.x(), axis.y(), axis.z());
+      dGeomSetRotation(geom, r);
+    }
+    dGeomSetPosition(geom, middle.x(), middle.y(), middle.z());
+    solid_geoms_.push_back(geom);
+  }
+}
+
+// Moved by hand; the velocity is what the solver gives them to push with.
+void Contacts::place_walkers(const Walkers& walkers) {
+  const std::span<const Solid> solids = walkers.solids();
+  for (std::size_t i = walker_geoms_.size(); i < solids.size(); ++i) {
+    const Capsule& capsule = solids[i].capsule;
+    const double length = capsule.b_m.z() - capsule.a_m.z();
+    walker_bodies_.push_back(dBodyCreate(world_));
+    dBodySetKinematic(walker_bodies_.back());
+    walker_geoms_.push_back(dCreateCapsule(nullptr, capsule.radius_m, length));
+    dGeomSetBody(walker_geoms_.back(), walker_bodies_.back());
+  }
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    const Vector3 middle = 0.5 * (solids[i].capsule.a_m + solids[i].capsule.b_m);
+    const Vector3& velocity = walkers.velocities_m_s()[i];
+    dBodySetPosition(walker_bodies_[i], middle.x(), middle.y(), middle.z());
+    dBodySetLinearVel(walker_bodies_[i], velocity.x(), velocity.y(), velocity.z());
+  }
+}
+
+void Contacts::collide_solids(std::size_t shape) {
+  if (solid_geoms_.empty() && walker_geoms_.empty()) return;
+  std::array<dReal, 6> part{};
+  dGeomGetAABB(geoms_[shape], part.data());
+  const auto meet = [&](dGeomID solid) {
+    std::array<dReal, 6> bounds{};
+    dGeomGetAABB(solid, bounds.data());
+    if (!apart(part, bounds) && collide_pair(shape, solid) > 0) on_obstacle_ = true;
+  };
+  std::array<std::uint32_t, SolidIndex::kMaxCandidates> near;
+  const std::size_t count = solids_.near(part[0], part[2], part[1], part[3], near);
+  for (std::size_t k = 0; k < count; ++k) meet(solid_geoms_[near[k]]);
+  for (const dGeomID walker : walker_geoms_) meet(walker);
 }
 
 void Contacts::place_obstacle(const TerrainBox& box) {
@@ -175,6 +236,7 @@ void Contacts::add_self(const dContactGeom& geometry) {
 
 void Contacts::collide_shape(std::size_t shape) {
   collide_ground(shape);
+  collide_solids(shape);
   if (obstacle_ == nullptr) return;
   std::array<dReal, 6> part{};
   std::array<dReal, 6> obstacle{};
@@ -206,7 +268,8 @@ int Contacts::collide_pair(std::size_t shape, dGeomID ground) {
   std::array<dContactGeom, kMaxPerPair> found;
   const int count =
       dCollide(geoms_[shape], ground, kMaxPerPair, found.data(), sizeof(dContactGeom));
-  for (int i = 0; i < count; ++i) add(shape, found[static_cast<std::size_t>(i)]);
+  const dBodyID other = dGeomGetBody(ground);
+  for (int i = 0; i < count; ++i) add(shape, found[static_cast<std::size_t>(i)], other);
   return count;
 }
 
@@ -264,7 +327,7 @@ void Contacts::touch_grid(std::size_t shape, const Vector3& centre_m, double rad
 // takes the normal forces that it finds without any friction: where the legs would slide apart
 // these are other forces, and a crouching robot slipped forwards at 0.27, backwards at 0.34 for a
 // coefficient of 0.30. It serves for the first step of a contact.
-void Contacts::add(std::size_t shape, const dContactGeom& geometry) {
+void Contacts::add(std::size_t shape, const dContactGeom& geometry, dBodyID other) {
   if (count_ == kMaxPerStep) {
     ++dropped_;
     return;
@@ -297,7 +360,7 @@ void Contacts::add(std::size_t shape, const dContactGeom& geometry) {
   for (int k = 0; k < 3; ++k) contact.fdir1[k] = along[k];
   const dJointID joint = dJointCreateContact(world_, group_, &contact);
   dJointSetFeedback(joint, &feedback_[count_]);
-  dJointAttach(joint, body, nullptr);
+  dJointAttach(joint, body, other);
   records_[count_] = {shape, normal, slip};
   ++count_;
 }

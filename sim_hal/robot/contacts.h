@@ -19,7 +19,9 @@
 #include "sim_hal/robot/articulation.h"
 #include "sim_hal/simulator_config.h"
 #include "sim_hal/world/grid_contacts.h"
+#include "sim_hal/world/solid_index.h"
 #include "sim_hal/world/terrain_index.h"
+#include "sim_hal/world/walkers.h"
 
 namespace surefoot::sim {
 
@@ -45,14 +47,16 @@ class Contacts {
   }
 
   Contacts(dWorldID world, const Articulation& robot, const Terrain& terrain,
-           const TerrainIndex& index, const PhysicsConfig& config);
+           const TerrainIndex& index, const SolidIndex& solids, const PhysicsConfig& config);
   ~Contacts();
   Contacts(const Contacts&) = delete;
   Contacts& operator=(const Contacts&) = delete;
 
   // Puts the obstacle there; it was nowhere before the first call.
   void place_obstacle(const TerrainBox& box);
-  // Whether any part of the robot met it in the last collide().
+  // Puts the people where they are now.
+  void place_walkers(const Walkers& walkers);
+  // Whether any part of the robot met it, or a solid, in the last collide().
   bool on_obstacle() const { return on_obstacle_; }
 
   // Before the step: finds contacts and makes their joints.
@@ -80,10 +84,13 @@ class Contacts {
   void make_terrain(const Terrain& terrain);
   void collide_ground(std::size_t shape);
   void collide_shape(std::size_t shape);
+  void make_solids();
+  void collide_solids(std::size_t shape);
   int collide_pair(std::size_t shape, dGeomID ground);  // number of contacts
   void collide_grid(std::size_t shape);
   void touch_grid(std::size_t shape, const Vector3& centre_m, double radius_m);
-  void add(std::size_t shape, const dContactGeom& geometry);
+  // other: the body it is in contact with; null: the world.
+  void add(std::size_t shape, const dContactGeom& geometry, dBodyID other = nullptr);
   void make_self_pairs();
   void collide_self();
   void add_self(const dContactGeom& geometry);
@@ -96,6 +103,10 @@ class Contacts {
   dGeomID plane_ = nullptr;
   const HeightGrid& grid_;
   std::vector<dGeomID> boxes_;
+  const SolidIndex& solids_;
+  std::vector<dGeomID> solid_geoms_;
+  std::vector<dGeomID> walker_geoms_;
+  std::vector<dBodyID> walker_bodies_;
   dGeomID obstacle_ = nullptr;
   bool on_obstacle_ = false;
   dJointGroupID group_ = nullptr;

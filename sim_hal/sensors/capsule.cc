@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim_hal/world/terrain_index.h"
+#include "sim_hal/world/ray.h"
 
 namespace surefoot::sim {
 

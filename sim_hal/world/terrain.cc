@@ -43,7 +43,8 @@ double Terrain::height_m(double x, double y) const {
   return height;
 }
 
-Terrain make_terrain(const WorldSpec& spec, std::uint64_t seed) {
+Terrain make_terrain(const WorldSpec& spec, std::uint64_t seed, double robot_width_m) {
+  const double goal_x_m = goal_of(spec, seed);
   Terrain terrain;
   terrain.friction = spec.friction;
   Random random(seed, kWorldStream);
@@ -56,6 +57,10 @@ Terrain make_terrain(const WorldSpec& spec, std::uint64_t seed) {
     case Generator::kGap: make_gap(spec.length_m, random, terrain); break;
     case Generator::kGauntlet: make_gauntlet(spec.height_m, spec.cover, random, terrain); break;
     case Generator::kRocks: make_rocks(spec, seed, random, terrain); break;
+    case Generator::kForest: make_forest(goal_x_m, robot_width_m, random, terrain); break;
+    case Generator::kWalkers: make_walkers(goal_x_m, robot_width_m, random, terrain); break;
+    case Generator::kWall: make_wall(spec.enclosed, random, terrain); break;
+    case Generator::kCuldesac: make_culdesac(random, terrain); break;
     case Generator::kHeightMap: make_height_map(spec, terrain); break;
   }
   return terrain;

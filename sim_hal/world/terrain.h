@@ -9,29 +9,12 @@
 
 #include "core/base/random.h"
 #include "core/math/linear.h"
+#include "sim_hal/world/solid.h"
+#include "sim_hal/world/terrain_box.h"
+#include "sim_hal/world/walkers.h"
 #include "sim_hal/world/world_spec.h"
 
 namespace surefoot::sim {
-
-struct TerrainBox {
-  double x_m = 0;  // centre
-  double y_m = 0;
-  double half_length_m = 0;  // along the box's own x
-  double half_width_m = 0;
-  double bottom_m = 0;
-  double top_m = 0;
-  double cos_yaw = 1;
-  double sin_yaw = 0;
-
-  bool covers(double x, double y) const {
-    const double dx = x - x_m;
-    const double dy = y - y_m;
-    const double along = cos_yaw * dx + sin_yaw * dy;
-    const double across = cos_yaw * dy - sin_yaw * dx;
-    return along <= half_length_m && along >= -half_length_m && across <= half_width_m &&
-           across >= -half_width_m;
-  }
-};
 
 // Heights at nodes (x0 + i cell, y0 + j cell), z[j * nx + i]. Between nodes two triangles per cell
 // split along the diagonal from (i, j) to (i + 1, j + 1).
@@ -57,19 +40,37 @@ struct HeightGrid {
   double height_m(double x, double y) const;
 };
 
+// Of a world with solids, as made.
+struct SpreadFigures {
+  double area_m2 = 0;  // on which they are spread
+  double steepest_rad = 0;
+  double roughness_rms_m = 0;
+  double passage_width_m = 0;
+  std::uint32_t layouts = 0;
+};
+
 struct Terrain {
   std::vector<TerrainBox> boxes;
   std::optional<TerrainBox> obstacle;  // not to be touched (world/obstacle.h)
   HeightGrid grid;
+  std::vector<Solid> solids;  // stand on the ground, are no part of it
+  std::vector<Sapling> saplings;
+  std::vector<Walker> walkers;
+  SpreadFigures spread;
   double friction = 0.6;
   std::uint32_t bridged_cells = 0;
   std::uint32_t tiles = 1;
 
+  // Of the ground: without solids.
   double height_m(double x, double y) const;
 };
 
+inline constexpr double kUsualWidth_m = 0.3;
+
 // Throws SimulatorError for an unreadable file or a clutter field that cannot be filled.
-Terrain make_terrain(const WorldSpec& spec, std::uint64_t seed);
+// robot_width_m: forests leave room for it.
+Terrain make_terrain(const WorldSpec& spec, std::uint64_t seed,
+                     double robot_width_m = kUsualWidth_m);
 
 // The generators, one file each.
 void make_clutter(double height_m, double cover, Random& random, Terrain& terrain);
@@ -80,6 +81,10 @@ void make_platform(double height_m, double edge_x_m, Random& random, Terrain& te
 void make_gauntlet(double height_m, double cover, Random& random, Terrain& terrain);
 void make_gap(double length_m, Random& random, Terrain& terrain);
 void make_rocks(const WorldSpec& spec, std::uint64_t seed, Random& random, Terrain& terrain);
+void make_forest(double goal_x_m, double robot_width_m, Random& random, Terrain& terrain);
+void make_walkers(double goal_x_m, double robot_width_m, Random& random, Terrain& terrain);
+void make_wall(bool enclosed, Random& random, Terrain& terrain);
+void make_culdesac(Random& random, Terrain& terrain);
 void make_height_map(const WorldSpec& spec, Terrain& terrain);
 
 // Part of the clutter field under boxes, on a 1 cm raster.

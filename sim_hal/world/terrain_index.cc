@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "sim_hal/world/ray.h"
 
 namespace surefoot::sim {
 
@@ -30,78 +31,7 @@ Rectangle bounds(const TerrainBox& box) {
   return {box.x_m - reach_x, box.y_m - reach_y, box.x_m + reach_x, box.y_m + reach_y};
 }
 
-// Narrows [t0, t1] to where origin + t * direction lies in [low, high]; false when nowhere.
-bool clip(double origin, double direction, double low, double high, double& t0, double& t1) {
-  if (direction == 0) return origin >= low && origin <= high;
-  const double inverse = 1.0 / direction;
-  double near = (low - origin) * inverse;
-  double far = (high - origin) * inverse;
-  if (near > far) std::swap(near, far);
-  t0 = std::max(t0, near);
-  t1 = std::min(t1, far);
-  return t0 <= t1;
-}
-
-double cast_box(const TerrainBox& box, const Vector3& origin, const Vector3& direction) {
-  double t0 = 0;
-  double t1 = kNoHit;
-  if (!clip(origin.z(), direction.z(), box.bottom_m, box.top_m, t0, t1)) return kNoHit;
-  const double dx = origin.x() - box.x_m;
-  const double dy = origin.y() - box.y_m;
-  const double along = box.cos_yaw * dx + box.sin_yaw * dy;
-  const double along_rate = box.cos_yaw * direction.x() + box.sin_yaw * direction.y();
-  if (!clip(along, along_rate, -box.half_length_m, box.half_length_m, t0, t1)) return kNoHit;
-  const double across = box.cos_yaw * dy - box.sin_yaw * dx;
-  const double across_rate = box.cos_yaw * direction.y() - box.sin_yaw * direction.x();
-  if (!clip(across, across_rate, -box.half_width_m, box.half_width_m, t0, t1)) return kNoHit;
-  return t0 > 0 ? t0 : kNoHit;
-}
-
 }  // namespace
-
-// Steps from raster cell to raster cell along a ray (Amanatides and Woo).
-struct TerrainIndex::Walk {
-  std::int64_t i = 0;
-  std::int64_t j = 0;
-  std::int64_t step_i = 0;
-  std::int64_t step_j = 0;
-  double next_i = kNoHit;  // t at which the ray leaves the cell in x
-  double next_j = kNoHit;
-  double per_i = kNoHit;
-  double per_j = kNoHit;
-
-  static void axis(double offset, double direction, double t0, double cell, std::int64_t limit,
-                   std::int64_t& index, std::int64_t& step, double& next, double& per) {
-    const double at = (offset + t0 * direction) / cell;
-    index = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(at)), 0, limit - 1);
-    if (direction == 0) return;
-    step = direction > 0 ? 1 : -1;
-    per = cell / std::fabs(direction);
-    const double border = static_cast<double>(direction > 0 ? index + 1 : index) * cell;
-    next = (border - offset) / direction;
-  }
-  Walk(const Vector3& offset, const Vector3& direction, double t0, double cell, std::size_t nx,
-       std::size_t ny) {
-    axis(offset.x(), direction.x(), t0, cell, static_cast<std::int64_t>(nx), i, step_i, next_i,
-         per_i);
-    axis(offset.y(), direction.y(), t0, cell, static_cast<std::int64_t>(ny), j, step_j, next_j,
-         per_j);
-  }
-  double leave() const { return std::min(next_i, next_j); }
-  void advance() {
-    if (next_i <= next_j) {
-      i += step_i;
-      next_i += per_i;
-    } else {
-      j += step_j;
-      next_j += per_j;
-    }
-  }
-  bool inside(std::size_t nx, std::size_t ny) const {
-    return i >= 0 && j >= 0 && i < static_cast<std::int64_t>(nx) &&
-           j < static_cast<std::int64_t>(ny);
-  }
-};
 
 TerrainIndex::TerrainIndex(const Terrain& terrain) : terrain_(terrain) {
   bool any = false;
@@ -251,7 +181,7 @@ double TerrainIndex::cast_grid(const Vector3& origin, const Vector3& direction, 
   if (!clip(origin.x(), direction.x(), grid.x0_m, grid.end_x_m(), t0, t1)) return kNoHit;
   if (!clip(origin.y(), direction.y(), grid.y0_m, grid.end_y_m(), t0, t1)) return kNoHit;
   const Vector3 offset(origin.x() - grid.x0_m, origin.y() - grid.y0_m, origin.z());
-  Walk walk(offset, direction, t0, grid.cell_m, grid.nx - 1, grid.ny - 1);
+  RasterWalk walk(offset, direction, t0, grid.cell_m, grid.nx - 1, grid.ny - 1);
   const double skew_rate = (direction.x() - direction.y()) / grid.cell_m;
   double from = t0;
   while (walk.inside(grid.nx - 1, grid.ny - 1)) {
@@ -293,11 +223,39 @@ double TerrainIndex::cast_grid(const Vector3& origin, const Vector3& direction, 
   return kNoHit;
 }
 
+// Worlds with solids are wide, and scanners look far: blocks of cells are passed over at once.
+void TerrainIndex::show(const SolidIndex* solids) {
+  solids_ = solids;
+  if (solids == nullptr || cells_.empty() || !block_max_m_.empty()) return;
+  blocks_x_ = (nx_ + kBlock - 1) / kBlock;
+  blocks_y_ = (ny_ + kBlock - 1) / kBlock;
+  block_max_m_.assign(blocks_x_ * blocks_y_, 0.0);
+  for (std::size_t j = 0; j < ny_; ++j) {
+    for (std::size_t i = 0; i < nx_; ++i) {
+      double& highest = block_max_m_[j / kBlock * blocks_x_ + i / kBlock];
+      highest = std::max(highest, cells_[j * nx_ + i].max_m);
+    }
+  }
+}
+
 double TerrainIndex::cast(const Vector3& origin, const Vector3& direction, double t_max) const {
-  const double ground = cast_ground(origin, direction, t_max);
-  if (obstacle_ == nullptr) return ground;
-  const double box = cast_box(*obstacle_, origin, direction);
-  return box <= t_max ? std::min(ground, box) : ground;
+  double nearest = cast_fixed(origin, direction, t_max);
+  if (obstacle_ != nullptr) {
+    const double box = cast_box(*obstacle_, origin, direction);
+    if (box <= t_max) nearest = std::min(nearest, box);
+  }
+  for (const Solid& solid : moving_) {
+    const double hit = cast_solid(solid, origin, direction);
+    if (hit <= t_max) nearest = std::min(nearest, hit);
+  }
+  return nearest;
+}
+
+double TerrainIndex::cast_fixed(const Vector3& origin, const Vector3& direction,
+                                double t_max) const {
+  if (solids_ == nullptr) return cast_ground(origin, direction, t_max);
+  const double solid = solids_->cast(origin, direction, t_max);
+  return std::min(solid, cast_ground(origin, direction, std::min(solid, t_max)));
 }
 
 double TerrainIndex::cast_ground(const Vector3& origin, const Vector3& direction,
@@ -321,8 +279,38 @@ double TerrainIndex::cast_ground(const Vector3& origin, const Vector3& direction
       !clip(origin.y(), direction.y(), y0_m_, y0_m_ + kCell_m * static_cast<double>(ny_), t0, t1)) {
     return miss;
   }
+  const double hit =
+      block_max_m_.empty() ? march(origin, direction, t0, t1) : leap(origin, direction, t0, t1);
+  return hit == kNoHit ? miss : std::min(hit, end);
+}
+
+// Block by block; cell by cell where the ray is low enough for a block's highest cell.
+double TerrainIndex::leap(const Vector3& origin, const Vector3& direction, double t0,
+                          double t1) const {
   const Vector3 offset(origin.x() - x0_m_, origin.y() - y0_m_, origin.z());
-  Walk walk(offset, direction, t0, kCell_m, nx_, ny_);
+  RasterWalk walk(offset, direction, t0, kCell_m * static_cast<double>(kBlock), blocks_x_,
+                  blocks_y_);
+  double from = t0;
+  while (walk.inside(blocks_x_, blocks_y_)) {
+    const double until = std::min(walk.leave(), t1);
+    const double highest = block_max_m_[static_cast<std::size_t>(walk.j) * blocks_x_ +
+                                        static_cast<std::size_t>(walk.i)];
+    const double lowest = origin.z() + direction.z() * (direction.z() < 0 ? until : from);
+    if (lowest <= highest) {
+      const double hit = march(origin, direction, from, until);
+      if (hit != kNoHit) return hit;
+    }
+    if (until >= t1) return kNoHit;
+    from = until;
+    walk.advance();
+  }
+  return kNoHit;
+}
+
+double TerrainIndex::march(const Vector3& origin, const Vector3& direction, double t0,
+                           double t1) const {
+  const Vector3 offset(origin.x() - x0_m_, origin.y() - y0_m_, origin.z());
+  RasterWalk walk(offset, direction, t0, kCell_m, nx_, ny_);
   double from = t0;
   while (walk.inside(nx_, ny_)) {
     const double until = std::min(walk.leave(), t1);
@@ -333,13 +321,13 @@ double TerrainIndex::cast_ground(const Vector3& origin, const Vector3& direction
       double hit = cell.count > 0 ? cast_boxes(cell, origin, direction) : kNoHit;
       if (!terrain_.grid.empty()) hit = std::min(hit, cast_grid(origin, direction, from, until));
       // A box reaching into later cells may be hit there, behind something nearer.
-      if (hit <= until) return std::min(hit, end);
+      if (hit <= until) return hit;
     }
-    if (until >= t1) return miss;
+    if (until >= t1) return kNoHit;
     from = until;
     walk.advance();
   }
-  return miss;
+  return kNoHit;
 }
 
 }  // namespace surefoot::sim

@@ -5,21 +5,21 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "core/math/linear.h"
+#include "sim_hal/world/ray.h"
+#include "sim_hal/world/solid_index.h"
 #include "sim_hal/world/terrain.h"
 
 namespace surefoot::sim {
-
-inline constexpr double kNoHit = std::numeric_limits<double>::infinity();
 
 class TerrainIndex {
  public:
   static constexpr double kCell_m = 0.1;
   static constexpr std::size_t kMaxCandidates = 64;
+  static constexpr std::size_t kBlock = 16;
 
   // The terrain must outlive the index.
   explicit TerrainIndex(const Terrain& terrain);
@@ -27,6 +27,9 @@ class TerrainIndex {
   // A box that may be moved between queries, beside the terrain: rays hit it. It is no ground: the
   // height queries know nothing of it. Null: none. It must outlive its use.
   void show(const TerrainBox* obstacle) { obstacle_ = obstacle; }
+  // Solids, those that stay and those that move between queries: the same holds of them.
+  void show(const SolidIndex* solids);
+  void show(std::span<const Solid> moving) { moving_ = moving; }
 
   double height_m(double x, double y) const;
   // Upper bound of the ground inside the rectangle.
@@ -39,16 +42,19 @@ class TerrainIndex {
   // when none. The direction need not have unit length. Starting below the ground gives an
   // arbitrary hit.
   double cast(const Vector3& origin, const Vector3& direction, double t_max) const;
+  // The same without what moves or may be moved.
+  double cast_fixed(const Vector3& origin, const Vector3& direction, double t_max) const;
 
  private:
   double cast_ground(const Vector3& origin, const Vector3& direction, double t_max) const;
+  double march(const Vector3& origin, const Vector3& direction, double t0, double t1) const;
+  double leap(const Vector3& origin, const Vector3& direction, double t0, double t1) const;
 
   struct Cell {
     std::uint32_t first = 0;  // into items_
     std::uint32_t count = 0;
     double max_m = 0;
   };
-  struct Walk;  // a ray on its way through the raster
 
   void add_boxes();
   void add_grid();
@@ -58,6 +64,8 @@ class TerrainIndex {
 
   const Terrain& terrain_;
   const TerrainBox* obstacle_ = nullptr;
+  const SolidIndex* solids_ = nullptr;
+  std::span<const Solid> moving_;
   double x0_m_ = 0;
   double y0_m_ = 0;
   double max_m_ = 0;
@@ -65,6 +73,9 @@ class TerrainIndex {
   std::size_t ny_ = 0;
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> items_;
+  std::size_t blocks_x_ = 0;  // blocks of kBlock x kBlock cells; none: far rays are not expected
+  std::size_t blocks_y_ = 0;
+  std::vector<double> block_max_m_;
 };
 
 }  // namespace surefoot::sim

@@ -28,19 +28,22 @@ apps::Config robot_named(const char* name) {
 // The trunk on a stand: the robot stays where it is while the suites let time pass.
 class Stand {
  public:
-  explicit Stand(const char* robot = "mini_cheetah")
-      : simulator_(robot_named(robot).robot, {}, config(), 1), board_(simulator_.board()) {}
+  explicit Stand(const char* robot = "mini_cheetah", sim::PlantKind plant = sim::PlantKind::kLegged)
+      : simulator_(robot_named(robot).robot, {}, config(plant), 1), board_(simulator_.board()) {}
 
   const hal::Board& board() const { return board_; }
   void pass(TimeNs time) { EXPECT_TRUE(ok(board_.clock->wait_until(board_.clock->now() + time))); }
 
  private:
-  static sim::SimulatorConfig config() {
+  static sim::SimulatorConfig config(sim::PlantKind plant) {
     sim::SimulatorConfig config;
     config.start.drop_height_m = 0.3;
     config.start.trunk_fixed = true;
     config.stereo.present = true;
     config.stereo.latency_s = 0.004;
+    config.lidar.present = true;
+    config.lidar.latency_s = 0.004;
+    config.plant = plant;
     return config;
   }
   sim::Simulator simulator_;
@@ -114,6 +117,22 @@ TEST(Simulator, PosePortKeepsTheRules) {
 TEST(Simulator, DepthCameraPortKeepsTheRules) {
   SimSensorBench<DepthBench> bench(&hal::Board::depth_camera, milliseconds(34), 8);
   EXPECT_EQ(joined(sensor_violations<DepthBench>(bench)), "");
+}
+
+TEST(Simulator, LidarPortKeepsTheRules) {
+  SimSensorBench<LidarBench> bench(&hal::Board::lidar, milliseconds(14), 8);
+  EXPECT_EQ(joined(sensor_violations<LidarBench>(bench)), "");
+}
+
+// Neither port of the other plant: a board has legs or a gait.
+TEST(Simulator, ABoardHasLegsOrAGait) {
+  const Stand legged;
+  EXPECT_NE(legged.board().can, nullptr);
+  EXPECT_EQ(legged.board().gait, nullptr);
+  const Stand fast("mini_cheetah", sim::PlantKind::kFast);
+  EXPECT_EQ(fast.board().can, nullptr);
+  EXPECT_NE(fast.board().gait, nullptr);
+  EXPECT_NE(fast.board().lidar, nullptr);
 }
 
 class SimStereoBench final : public StereoBench {

@@ -102,6 +102,25 @@ TEST(ConfigRoot, AMissionThatCrossesGoesToTheGoalOfItsWorldUnlessItHasOne) {
   EXPECT_EQ(loaded(request).autonomy.mission.goal_x_m, 1.0);
 }
 
+TEST(ConfigRoot, AForestHasItsGoalWhereTheSeedDrewItOrAsFarAsAskedFor) {
+  RunRequest request = cross("forest");
+  request.seed = 7;
+  const Config config = loaded(request);
+  EXPECT_EQ(config.autonomy.mission.goal_x_m, sim::goal_of(config.world, 7));
+  EXPECT_EQ(config.world.goal_x_m, config.autonomy.mission.goal_x_m);
+  EXPECT_EQ(loaded(cross("forest:length=40")).autonomy.mission.goal_x_m, 40.0);
+  EXPECT_TRUE(loaded(cross("wall:enclosed=true")).world.enclosed);
+}
+
+TEST(ConfigRoot, ThePlantHasAShortName) {
+  RunRequest request = cross();
+  EXPECT_EQ(loaded(request).sim.plant, sim::PlantKind::kLegged);
+  request.sets = {"plant=fast"};
+  EXPECT_EQ(loaded(request).sim.plant, sim::PlantKind::kFast);
+  request.sets = {"plant=hover"};
+  EXPECT_EQ(issues_of(request).rfind("--set: sim.plant: ", 0), 0U);
+}
+
 TEST(ConfigRoot, WrongWorldParameters) {
   EXPECT_EQ(issues_of(cross("flat:height=0.05")),
             "--world: world.height: not a parameter of this world; allowed: friction\n");

@@ -58,6 +58,40 @@ long allocations_of(const WorldSpec& world) {
   return calls;
 }
 
+// Without legs, with a scanner that is listened to, among people.
+long allocations_of_the_fast_plant() {
+  robot::RobotModel robot = mini_cheetah();
+  robot.lidar.beams = 361;
+  robot.lidar.view_rad = 3.14;
+  robot.lidar.rate_Hz = 75;
+  robot.lidar.max_range_m = 30;
+  WorldSpec world;
+  world.generator = Generator::kWalkers;
+  world.goal_x_m = 14;
+  SimulatorConfig config;
+  config.plant = PlantKind::kFast;
+  config.lidar.present = true;
+  Simulator simulator(robot, world, config, 1);
+  const hal::Board board = simulator.board();
+  const auto frame = std::make_unique<hal::DepthFrame>();
+  const auto scan = std::make_unique<hal::LidarScan>();
+  hal::GaitSample sample;
+  TimeNs time;
+  calls = 0;
+  armed = true;
+  for (int i = 0; i < 2000; ++i) {
+    time = time + milliseconds(2);
+    static_cast<void>(board.gait->send({true, 0.8, 0.1, 0.1}));
+    static_cast<void>(board.clock->wait_until(time));
+    static_cast<void>(board.gait->receive(sample));
+    static_cast<void>(board.depth_camera->receive(*frame));
+    static_cast<void>(board.lidar->receive(*scan));
+    simulator.truth();
+  }
+  armed = false;
+  return calls;
+}
+
 TEST(Allocation, NoneAfterConstruction) {
   armed = true;
   std::vector<int>* volatile probe = new std::vector<int>(100);  // the counter itself works
@@ -73,6 +107,10 @@ TEST(Allocation, NoneAfterConstruction) {
   world.generator = Generator::kRamps;
   world.slope_rad = 0.2;
   EXPECT_EQ(allocations_of(world), 0);
+  world.generator = Generator::kWalkers;
+  world.goal_x_m = 14;
+  EXPECT_EQ(allocations_of(world), 0);
+  EXPECT_EQ(allocations_of_the_fast_plant(), 0);
 }
 
 }  // namespace
