@@ -6,17 +6,21 @@
 
 #include "core/autonomy/jump_pilot.h"
 #include "core/autonomy/localisation_counters.h"
+#include "core/autonomy/object_task_counters.h"
 #include "core/autonomy/terrain_counters.h"
 #include "core/base/fields.h"
 #include "core/base/fixed_vector.h"
 #include "core/base/time.h"
 #include "core/control/foothold_reason.h"
 #include "core/estimation/tracking.h"
+#include "core/navigation/status.h"
 #include "core/obstacles/field_pool.h"
 #include "core/robot/robot_model.h"
 #include "hal/api/can_port.h"
 #include "hal/api/depth_camera_port.h"
+#include "hal/api/gait_port.h"
 #include "hal/api/imu_port.h"
+#include "hal/api/lidar_port.h"
 #include "hal/api/operator_port.h"
 #include "hal/api/pose_port.h"
 #include "hal/api/stereo_camera_port.h"
@@ -26,11 +30,12 @@ namespace surefoot::autonomy {
 inline constexpr std::size_t kMaxCanFramesPerTick = 64;
 inline constexpr std::size_t kMaxImuSamplesPerTick = 16;
 inline constexpr std::size_t kMaxPoseSamplesPerTick = 8;
+inline constexpr std::size_t kMaxGaitSamplesPerTick = 8;
 inline constexpr std::size_t kMaxSlowTasks = 8;
 
-// Everything a tick may depend on, latched once by the executive. Depth frames and stereo pairs are
-// large and rare: they are kept beside this struct and recorded on channels of their own, just
-// before the tick.
+// Everything a tick may depend on, latched once by the executive. Depth frames, stereo pairs and
+// laser scans are large and rare: they are kept beside this struct and recorded on channels of
+// their own, just before the tick.
 struct TickInputs {
   std::uint64_t tick = 0;
   TimeNs stamp;       // logical time of the tick
@@ -38,12 +43,15 @@ struct TickInputs {
   FixedVector<hal::CanFrame, kMaxCanFramesPerTick> can;
   FixedVector<hal::ImuSample, kMaxImuSamplesPerTick> imu;
   FixedVector<hal::PoseSample, kMaxPoseSamplesPerTick> pose;
+  FixedVector<hal::GaitSample, kMaxGaitSamplesPerTick> gait;  // where the body has gaits of its own
   bool operator_fresh = false;
   hal::OperatorCommand operator_command;  // meaningful where operator_fresh
   bool depth_fresh = false;
   const hal::DepthFrame* depth = nullptr;  // valid during the tick where depth_fresh; not a field
   bool stereo_fresh = false;
   const hal::StereoFrame* stereo = nullptr;  // likewise, where stereo_fresh
+  bool lidar_fresh = false;
+  const hal::LidarScan* lidar = nullptr;  // likewise, where lidar_fresh
   // Bit i: slow task i of the table was due at this tick but had not finished (an overrun). Its
   // result stays back until the first tick where the bit is clear.
   std::uint32_t slow_task_overruns = 0;
@@ -56,10 +64,12 @@ struct TickInputs {
     visit("can", self.can);
     visit("imu", self.imu);
     visit("pose", self.pose);
+    visit("gait", self.gait);
     visit("operator_fresh", self.operator_fresh);
     if (self.operator_fresh) visit("operator_command", self.operator_command);
     visit("depth_fresh", self.depth_fresh);
     visit("stereo_fresh", self.stereo_fresh);
+    visit("lidar_fresh", self.lidar_fresh);
     visit("slow_task_overruns", self.slow_task_overruns);
   }
 };
@@ -86,6 +96,7 @@ enum class StopReason : std::uint8_t {
   kRecoveryFailed,  // on the ground, and no roll has turned the robot over
   kLiveLock,        // walks, and gets no nearer to the goal
   kNoJump,          // an edge ahead that no jump takes, or not from here; telemetry says why
+  kNoPath,          // navigation: no way to the goal is left open
 };
 
 // One leg, in the odometry frame O (docs/frames_and_units.md).
@@ -205,6 +216,34 @@ struct TerrainTelemetry {
   }
 };
 
+// What navigation makes of the objects around the robot.
+struct NavigationTelemetry {
+  navigation::NavigationState state = navigation::NavigationState::kIdle;
+  navigation::NavigationReason reason = navigation::NavigationReason::kNoGoal;
+  double rest_m = 0;      // of the way, when last planned
+  double off_path_m = 0;  // robot to the left of the path
+  double free_m = 0;      // of the way ahead
+  std::uint32_t objects = 0;
+  std::uint32_t path_points = 0;
+  std::uint64_t objects_digest = 0;
+  navigation::NavigationCounters plans;
+  ObjectTaskCounters sight;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("state", self.state);
+    visit("reason", self.reason);
+    visit("rest_m", self.rest_m);
+    visit("off_path_m", self.off_path_m);
+    visit("free_m", self.free_m);
+    visit("objects", self.objects);
+    visit("path_points", self.path_points);
+    visit("objects_digest", self.objects_digest);
+    visit("plans", self.plans);
+    visit("sight", self.sight);
+  }
+};
+
 // The jump pilot: what it does, and the edge it looks at.
 struct JumpTelemetry {
   PilotStage pilot = PilotStage::kWatch;
@@ -244,6 +283,7 @@ struct Telemetry {
   StereoTelemetry stereo;
   LocalisationTelemetry localisation;
   TerrainTelemetry terrain;
+  NavigationTelemetry navigation;
   std::uint64_t depth_frames_mapped = 0;
   std::uint64_t map_digest = 0;  // hash of the published map window
   std::uint64_t replies_missed = 0;
@@ -266,6 +306,7 @@ struct Telemetry {
     visit("stereo", self.stereo);
     visit("localisation", self.localisation);
     visit("terrain", self.terrain);
+    visit("navigation", self.navigation);
     visit("depth_frames_mapped", self.depth_frames_mapped);
     visit("map_digest", self.map_digest);
     visit("replies_missed", self.replies_missed);
@@ -275,12 +316,14 @@ struct Telemetry {
 
 struct TickOutputs {
   FixedVector<hal::CanFrame, kMaxCanFramesPerTick> can;
+  hal::GaitCommand gait;        // for a body with gaits of its own
   bool stereo_trigger = false;  // asks the stereo camera for a pair
   Telemetry telemetry;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("can", self.can);
+    visit("gait", self.gait);
     visit("stereo_trigger", self.stereo_trigger);
     visit("telemetry", self.telemetry);
   }

@@ -107,6 +107,7 @@ void Executive::run_tick_body(Status woke) {
   const TimeNs begin = stopwatch();
   inline_time_ = {};
   outputs_.can.clear();
+  outputs_.gait = {};
   outputs_.stereo_trigger = false;
   latch(woke);
   publish_due();
@@ -127,8 +128,8 @@ void Executive::latch(Status woke) {
   counters_.pose_dropped += drain(board.pose, inputs_.pose);
   inputs_.operator_fresh =
       board.operator_port != nullptr && ok(board.operator_port->receive(inputs_.operator_command));
-  latch_depth();
-  latch_stereo();
+  latch_gait();
+  latch_frames();
   latch_overruns();
 }
 
@@ -149,34 +150,44 @@ void Executive::latch_can() {
   SUREFOOT_ASSERT(ok(shortened));
 }
 
-void Executive::latch_depth() {
-  inputs_.depth_fresh = false;
-  inputs_.depth = nullptr;
-  depth_bytes_size_ = 0;
-  if (setup_.board.depth_camera == nullptr) return;
-  if (!ok(setup_.board.depth_camera->receive(depth_))) return;
-  if (!ok(encode_depth(depth_, depth_bytes_, depth_bytes_size_))) {
-    ++counters_.depth_invalid;
-    return;
+void Executive::latch_gait() {
+  hal::GaitPort* const port = setup_.board.gait;
+  inputs_.gait.clear();
+  if (port == nullptr) return;
+  hal::GaitSample sample;
+  for (std::size_t i = 0; i < kDrainPiece * kDrainPieces && ok(port->receive(sample)); ++i) {
+    counters_.gait_dropped += append_newest(inputs_.gait, sample);
   }
-  inputs_.depth_fresh = true;
-  inputs_.depth = &depth_;
-  store_record(hal::RecordChannel::kDepth, std::span(depth_bytes_).first(depth_bytes_size_));
 }
 
-void Executive::latch_stereo() {
-  inputs_.stereo_fresh = false;
-  inputs_.stereo = nullptr;
-  stereo_bytes_size_ = 0;
-  if (setup_.board.stereo_camera == nullptr) return;
-  if (!ok(setup_.board.stereo_camera->receive(stereo_))) return;
-  if (!ok(encode_stereo(stereo_, stereo_bytes_, stereo_bytes_size_))) {
-    ++counters_.stereo_invalid;
-    return;
+// Null: nothing fresh.
+template <class Port, class Frame, std::size_t kMaxBytes>
+const Frame* Executive::latch_frame(Port* port, Latched<Frame, kMaxBytes>& latched,
+                                    Status (*encode)(const Frame&, std::span<std::uint8_t>,
+                                                     std::size_t&),
+                                    hal::RecordChannel channel, std::uint64_t& invalid) {
+  latched.size = 0;
+  if (port == nullptr || !ok(port->receive(latched.frame))) return nullptr;
+  if (!ok(encode(latched.frame, latched.bytes, latched.size))) {
+    ++invalid;
+    return nullptr;
   }
-  inputs_.stereo_fresh = true;
-  inputs_.stereo = &stereo_;
-  store_record(hal::RecordChannel::kStereo, std::span(stereo_bytes_).first(stereo_bytes_size_));
+  store_record(channel, latched.used());
+  return &latched.frame;
+}
+
+void Executive::latch_frames() {
+  using hal::RecordChannel;
+  const hal::Board& board = setup_.board;
+  inputs_.depth = latch_frame(board.depth_camera, depth_, encode_depth, RecordChannel::kDepth,
+                              counters_.depth_invalid);
+  inputs_.stereo = latch_frame(board.stereo_camera, stereo_, encode_stereo, RecordChannel::kStereo,
+                               counters_.stereo_invalid);
+  inputs_.lidar = latch_frame(board.lidar, lidar_, encode_lidar, RecordChannel::kLidar,
+                              counters_.lidar_invalid);
+  inputs_.depth_fresh = inputs_.depth != nullptr;
+  inputs_.stereo_fresh = inputs_.stereo != nullptr;
+  inputs_.lidar_fresh = inputs_.lidar != nullptr;
 }
 
 void Executive::latch_overruns() {
@@ -251,6 +262,9 @@ void Executive::commit() {
       if (!ok(setup_.board.can->send(frame))) ++counters_.sends_refused;
     }
   }
+  if (setup_.board.gait != nullptr && !ok(setup_.board.gait->send(outputs_.gait))) {
+    ++counters_.sends_refused;
+  }
   if (outputs_.stereo_trigger) {
     hal::StereoCameraPort* const camera = setup_.board.stereo_camera;
     if (camera == nullptr || !ok(camera->trigger())) ++counters_.triggers_refused;
@@ -264,8 +278,9 @@ void Executive::commit() {
   Fnv64 chain;
   chain.word(hash_, sizeof(hash_));
   chain.bytes(tick_bytes_.data(), inputs_size);
-  chain.bytes(depth_bytes_.data(), depth_bytes_size_);
-  chain.bytes(stereo_bytes_.data(), stereo_bytes_size_);
+  chain.bytes(depth_.bytes.data(), depth_.size);
+  chain.bytes(stereo_.bytes.data(), stereo_.size);
+  chain.bytes(lidar_.bytes.data(), lidar_.size);
   chain.bytes(tick_bytes_.data() + inputs_size, outputs_size);
   hash_ = chain.value();
 

@@ -16,11 +16,11 @@
 // release() that answers false when there is none; it is not asked while it is pending, so events
 // closer together than the latency are passed over. Only ticks lost to an overrun count as skipped.
 //
-// Hash chain: h[t] = Fnv64(h[t-1], canonical bytes of TickInputs, of the depth frame and of the
-// stereo pair where fresh, of TickOutputs), h[-1] = 0. Execution times never enter it.
+// Hash chain: h[t] = Fnv64(h[t-1], canonical bytes of TickInputs, of the depth frame, of the stereo
+// pair and of the laser scan where fresh, of TickOutputs), h[-1] = 0. Execution times never enter.
 //
-// TickOutputs: the list of CAN frames is emptied and the trigger cleared before each tick;
-// telemetry keeps its values until a task writes them again.
+// TickOutputs: the list of CAN frames, the gait command and the trigger are cleared before each
+// tick; telemetry keeps its values until a task writes them again.
 //
 // Fixed memory (about 4.5 MB, most of it one depth frame, one stereo pair and their bytes); no
 // heap; the object belongs into static storage. Cost of a tick without tasks: O(inputs + outputs)
@@ -88,9 +88,11 @@ struct ExecutiveCounters {
   std::uint64_t can_invalid = 0;  // received with an impossible size: ignored
   std::uint64_t imu_dropped = 0;
   std::uint64_t pose_dropped = 0;
-  std::uint64_t sends_refused = 0;     // by the port, of kMaxCanFramesPerTick at most per tick
+  std::uint64_t gait_dropped = 0;
+  std::uint64_t sends_refused = 0;     // CAN frames and gait commands, by the port
   std::uint64_t depth_invalid = 0;     // frames whose size exceeds the capacity: ignored
   std::uint64_t stereo_invalid = 0;    // pairs, likewise
+  std::uint64_t lidar_invalid = 0;     // scans, likewise
   std::uint64_t triggers_refused = 0;  // by the stereo camera, or there is none
   std::uint64_t records_refused = 0;   // by the record sink
   std::uint64_t overrun_ticks = 0;     // ticks at which a slow task was due but not done
@@ -132,11 +134,25 @@ class Executive {
     DurationHistogram histogram;
   };
 
+  // A large input that lies beside TickInputs, and its bytes for the hash and the record.
+  template <class Frame, std::size_t kMaxBytes>
+  struct Latched {
+    Frame frame{};
+    std::size_t size = 0;  // of the bytes; 0: nothing fresh
+    std::array<std::uint8_t, kMaxBytes> bytes{};
+
+    std::span<const std::uint8_t> used() const { return std::span(bytes).first(size); }
+  };
+  template <class Port, class Frame, std::size_t kMaxBytes>
+  const Frame* latch_frame(Port* port, Latched<Frame, kMaxBytes>& latched,
+                           Status (*encode)(const Frame&, std::span<std::uint8_t>, std::size_t&),
+                           hal::RecordChannel channel, std::uint64_t& invalid);
+
   void run_tick_body(Status woke);
   void latch(Status woke);
   void latch_can();
-  void latch_depth();
-  void latch_stereo();
+  void latch_gait();
+  void latch_frames();
   void latch_overruns();
   void publish_due();
   void run_table();
@@ -158,12 +174,9 @@ class Executive {
   DurationHistogram tick_histogram_;
   autonomy::TickInputs inputs_;
   autonomy::TickOutputs outputs_;
-  hal::DepthFrame depth_{};
-  std::size_t depth_bytes_size_ = 0;
-  std::array<std::uint8_t, kMaxDepthBytes> depth_bytes_{};
-  hal::StereoFrame stereo_{};
-  std::size_t stereo_bytes_size_ = 0;
-  std::array<std::uint8_t, kMaxStereoBytes> stereo_bytes_{};
+  Latched<hal::DepthFrame, kMaxDepthBytes> depth_;
+  Latched<hal::StereoFrame, kMaxStereoBytes> stereo_;
+  Latched<hal::LidarScan, kMaxLidarBytes> lidar_;
   std::array<std::uint8_t, kMaxTickBytes> tick_bytes_{};
 };
 

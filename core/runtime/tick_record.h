@@ -19,6 +19,7 @@ inline constexpr std::size_t kMaxDepthBytes =
     2 * hal::kMaxDepthWidth_px * hal::kMaxDepthHeight_px + 64;
 inline constexpr std::size_t kMaxStereoBytes =
     2 * hal::kMaxStereoWidth_px * hal::kMaxStereoHeight_px + 64;
+inline constexpr std::size_t kMaxLidarBytes = 4 * hal::kMaxLidarBeams + 64;
 
 struct TickRecord {
   autonomy::TickInputs inputs;
@@ -33,8 +34,8 @@ struct TickRecord {
   }
 };
 
-// Decodes one kTick message; inputs.depth and .stereo are left null. kCorrupt: too short, too long,
-// or a list beyond its capacity; `out` is then partly overwritten.
+// Decodes one kTick message; inputs.depth, .stereo and .lidar are left null. kCorrupt: too short,
+// too long, or a list beyond its capacity; `out` is then partly overwritten.
 Status decode_tick(std::span<const std::uint8_t> bytes, TickRecord& out);
 
 // Canonical bytes of a frame into `out`; `size` is how many. kInvalid: the size in the header is
@@ -48,5 +49,9 @@ Status decode_depth(std::span<const std::uint8_t> bytes, hal::DepthFrame& out);
 // The same for stereo pairs, on channel kStereo.
 Status encode_stereo(const hal::StereoFrame& frame, std::span<std::uint8_t> out, std::size_t& size);
 Status decode_stereo(std::span<const std::uint8_t> bytes, hal::StereoFrame& out);
+
+// The same for laser scans, on channel kLidar.
+Status encode_lidar(const hal::LidarScan& scan, std::span<std::uint8_t> out, std::size_t& size);
+Status decode_lidar(std::span<const std::uint8_t> bytes, hal::LidarScan& out);
 
 }  // namespace surefoot::runtime

@@ -61,6 +61,26 @@ class ReplaySamples final : public Port {
 using ReplayImu = ReplaySamples<ImuPort, ImuSample, &autonomy::TickInputs::imu>;
 using ReplayPose = ReplaySamples<PosePort, PoseSample, &autonomy::TickInputs::pose>;
 
+class ReplayGait final : public GaitPort {
+ public:
+  explicit ReplayGait(const runtime::TickRecord& tick) : tick_(tick) {}
+  void rewind() { delivered_ = 0; }
+
+ private:
+  Status do_receive(GaitSample& out) override {
+    const std::size_t count = deliver(tick_.inputs.gait, delivered_, std::span(&out, 1));
+    counters_.delivered += count;
+    return count == 1 ? Status::kOk : Status::kUnavailable;
+  }
+  // What came of it is in the record.
+  Status do_send(const GaitCommand&) override { return Status::kOk; }
+  SensorCounters do_counters() const override { return counters_; }
+
+  const runtime::TickRecord& tick_;
+  std::size_t delivered_ = 0;
+  SensorCounters counters_;
+};
+
 class ReplayOperator final : public OperatorPort {
  public:
   explicit ReplayOperator(const runtime::TickRecord& tick) : tick_(tick) {}
@@ -80,6 +100,13 @@ class ReplayOperator final : public OperatorPort {
   bool waiting_ = false;
   SensorCounters counters_;
 };
+
+// Of a picture only the pixels in use are copied.
+template <class Frame>
+void assign(Frame& to, const Frame& from) {
+  to.assign(from);
+}
+void assign(LidarScan& to, const LidarScan& from) { to = from; }
 
 // A camera whose pictures lie beside the tick's inputs, which say whether there is one.
 template <class Port, class Frame, auto kFresh>
@@ -103,7 +130,7 @@ class ReplayFrames : public Port {
   Status do_receive(Frame& out) override {
     if (!waiting_) return Status::kUnavailable;
     waiting_ = false;
-    out.assign(frame_);
+    assign(out, frame_);
     ++counters_.delivered;
     return Status::kOk;
   }
@@ -117,6 +144,8 @@ class ReplayFrames : public Port {
   SensorCounters counters_;
 };
 using ReplayDepth = ReplayFrames<DepthCameraPort, DepthFrame, &autonomy::TickInputs::depth_fresh>;
+
+using ReplayLidar = ReplayFrames<LidarPort, LidarScan, &autonomy::TickInputs::lidar_fresh>;
 
 class ReplayStereo final
     : public ReplayFrames<StereoCameraPort, StereoFrame, &autonomy::TickInputs::stereo_fresh> {
@@ -147,10 +176,16 @@ struct ReplayBoard::Impl final : public Clock {
   ReplayOperator operator_port{tick};
   ReplayDepth depth{tick};
   ReplayStereo stereo{tick};
+  ReplayLidar lidar{tick};
+  ReplayGait gait{tick};
 
   virtual ~Impl() = default;
   void read_tick();
   bool take(const RecordMessage& message);
+  template <class Frame, class Frames>
+  void take_frame(const RecordMessage& message,
+                  Status (*decode)(std::span<const std::uint8_t>, Frame&), Frames& frames,
+                  const std::string& what);
   bool take_tick(const RecordMessage& message);
   void stop(ReplayEnd how, const std::string& reason, const RecordMessage& message);
 
@@ -169,6 +204,7 @@ void ReplayBoard::Impl::stop(ReplayEnd how, const std::string& reason,
 void ReplayBoard::Impl::read_tick() {
   depth.forget();
   stereo.forget();
+  lidar.forget();
   RecordMessage message;
   while (!tick_waits && end == ReplayEnd::kNotYet) {
     const Status status = reader.next(message);
@@ -191,20 +227,27 @@ bool ReplayBoard::Impl::take(const RecordMessage& message) {
       has_configuration = true;
       return false;
     case RecordChannel::kDepth:
-      if (!ok(runtime::decode_depth(message.bytes, depth.frame()))) {
-        stop(ReplayEnd::kDamaged, "a depth frame does not decode: of another version?", message);
-      }
-      depth.note(message.stamp);
+      take_frame(message, runtime::decode_depth, depth, "depth frame");
       return false;
     case RecordChannel::kStereo:
-      if (!ok(runtime::decode_stereo(message.bytes, stereo.frame()))) {
-        stop(ReplayEnd::kDamaged, "a stereo pair does not decode: of another version?", message);
-      }
-      stereo.note(message.stamp);
+      take_frame(message, runtime::decode_stereo, stereo, "stereo pair");
+      return false;
+    case RecordChannel::kLidar:
+      take_frame(message, runtime::decode_lidar, lidar, "laser scan");
       return false;
     case RecordChannel::kTick: return take_tick(message);
-    default: return false;  // lidar scans are not inputs of a tick yet
   }
+  return false;
+}
+
+template <class Frame, class Frames>
+void ReplayBoard::Impl::take_frame(const RecordMessage& message,
+                                   Status (*decode)(std::span<const std::uint8_t>, Frame&),
+                                   Frames& frames, const std::string& what) {
+  if (!ok(decode(message.bytes, frames.frame()))) {
+    stop(ReplayEnd::kDamaged, "a " + what + " does not decode: of another version?", message);
+  }
+  frames.note(message.stamp);
 }
 
 bool ReplayBoard::Impl::take_tick(const RecordMessage& message) {
@@ -219,17 +262,15 @@ bool ReplayBoard::Impl::take_tick(const RecordMessage& message) {
          message);
     return false;
   }
-  if (depth.missing()) {
-    stop(ReplayEnd::kGap, "the depth frame of tick " + std::to_string(granted) + " is missing",
-         message);
-    return false;
-  }
-  if (stereo.missing()) {
-    stop(ReplayEnd::kGap, "the stereo pair of tick " + std::to_string(granted) + " is missing",
-         message);
-    return false;
-  }
-  return true;
+  const char* const missing = depth.missing()    ? "depth frame"
+                              : stereo.missing() ? "stereo pair"
+                              : lidar.missing()  ? "laser scan"
+                                                 : nullptr;
+  if (missing == nullptr) return true;
+  stop(ReplayEnd::kGap,
+       std::string("the ") + missing + " of tick " + std::to_string(granted) + " is missing",
+       message);
+  return false;
 }
 
 // The recorded tick is what the deadline asks for; if it is not, ReplayComparer finds the stamps
@@ -245,6 +286,8 @@ Status ReplayBoard::Impl::do_wait_until(TimeNs) {
   operator_port.rewind();
   depth.rewind();
   stereo.rewind();
+  lidar.rewind();
+  gait.rewind();
   return tick.inputs.late ? Status::kTimeout : Status::kOk;
 }
 
@@ -280,6 +323,8 @@ Board ReplayBoard::board(TimeNs period) {
   board.operator_port = &impl_->operator_port;
   board.depth_camera = &impl_->depth;
   board.stereo_camera = &impl_->stereo;
+  board.lidar = &impl_->lidar;
+  board.gait = &impl_->gait;
   return board;
 }
 

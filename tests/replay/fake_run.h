@@ -34,6 +34,8 @@ struct FakeAutonomy {
     if (inputs.stereo_fresh) {
       a.seen = a.seen * 31 + inputs.stereo->left[3] + inputs.stereo->right[5];
     }
+    if (inputs.lidar_fresh) a.position_m += inputs.lidar->range_m[4];
+    for (const auto& sample : inputs.gait) a.position_m += 1e-3 * sample.velocity_B_m_s[0];
     if (inputs.late) a.seen += 7;
     return true;
   }
@@ -50,6 +52,8 @@ struct FakeAutonomy {
       const Status status = outputs.can.push_back(frame);
       SUREFOOT_ASSERT(ok(status));
     }
+    outputs.gait.walk = a.tick % 3 == 1;
+    outputs.gait.forward_m_s = a.position_m;
     outputs.stereo_trigger = a.tick % 20 == 3;
     outputs.telemetry.p_OB_m[0] = a.position_m;
     outputs.telemetry.replies_missed = a.published;
@@ -111,6 +115,13 @@ class FakeInputs {
     }
     if (tick % 5 == 2) feed_depth(board);
     if (tick % 20 == 12) feed_stereo(board);
+    if (tick % 7 == 4) feed_lidar(board);
+    if (tick % 2 == 1) {
+      hal::GaitSample gait;
+      gait.sequence = static_cast<std::uint32_t>(tick);
+      gait.velocity_B_m_s[0] = random_.uniform();
+      board.gait.push(gait);
+    }
   }
 
  private:
@@ -132,6 +143,14 @@ class FakeInputs {
       frame.right[i] = static_cast<std::uint8_t>(random_.below(256));
     }
     board.stereo.waiting = 1;
+  }
+
+  void feed_lidar(FakeBoard& board) {
+    board.lidar.scan.beam_count = 19;
+    for (std::size_t i = 0; i < 19; ++i) {
+      board.lidar.scan.range_m[i] = static_cast<float>(random_.uniform(0.5, 20.0));
+    }
+    board.lidar.waiting = 1;
   }
 
   Random random_;

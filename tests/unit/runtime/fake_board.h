@@ -142,6 +142,37 @@ class FakeStereo final : public hal::StereoCameraPort {
   hal::SensorCounters do_counters() const override { return {}; }
 };
 
+class FakeLidar final : public hal::LidarPort {
+ public:
+  std::size_t waiting = 0;
+  hal::LidarScan scan;
+
+ private:
+  Status do_receive(hal::LidarScan& out) override {
+    if (waiting == 0) return Status::kUnavailable;
+    --waiting;
+    out = scan;
+    return Status::kOk;
+  }
+  hal::SensorCounters do_counters() const override { return {}; }
+};
+
+class FakeGait final : public FakeQueue<hal::GaitPort, hal::GaitSample> {
+ public:
+  std::vector<hal::GaitCommand> sent;
+  bool refuse = false;
+
+ private:
+  Status do_send(const hal::GaitCommand& command) override {
+    sent.push_back(command);
+    return refuse ? Status::kUnavailable : Status::kOk;
+  }
+  Status do_receive(hal::GaitSample& out) override {
+    return take(std::span(&out, 1)) == 1 ? Status::kOk : Status::kUnavailable;
+  }
+  hal::SensorCounters do_counters() const override { return {}; }
+};
+
 // Keeps every message in memory.
 class FakeRecord final : public hal::RecordSink {
  public:
@@ -174,6 +205,8 @@ struct FakeBoard {
   FakeOperator operator_port;
   FakeDepth depth;
   FakeStereo stereo;
+  FakeLidar lidar;
+  FakeGait gait;
   FakeRecord record;
 
   hal::Board board() {
@@ -186,6 +219,8 @@ struct FakeBoard {
     board.operator_port = &operator_port;
     board.depth_camera = &depth;
     board.stereo_camera = &stereo;
+    board.lidar = &lidar;
+    board.gait = &gait;
     board.record = &record;
     return board;
   }

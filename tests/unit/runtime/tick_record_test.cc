@@ -105,6 +105,35 @@ TEST(TickRecord, StereoFastPathWritesCanonicalBytes) {
   EXPECT_EQ(encode_stereo(*frame, fast, size), Status::kInvalid);
 }
 
+TEST(TickRecord, LidarFastPathWritesCanonicalBytes) {
+  hal::LidarScan scan;
+  scan.stamp = milliseconds(79);
+  scan.beam_interval = microseconds(37);
+  scan.sequence = 11;
+  scan.beam_count = hal::kMaxLidarBeams;
+  scan.first_angle_rad = -1.5f;
+  scan.angle_step_rad = 0.01f;
+  for (std::size_t i = 0; i < scan.range_m.size(); ++i) {
+    scan.range_m[i] = 0.25f * static_cast<float>(i);
+  }
+  std::vector<std::uint8_t> canonical(kMaxLidarBytes);
+  FieldWriter writer(canonical);
+  writer.members(scan);
+  ASSERT_EQ(writer.status(), Status::kOk);
+  std::vector<std::uint8_t> fast(kMaxLidarBytes);
+  std::size_t size = 0;
+  ASSERT_EQ(encode_lidar(scan, fast, size), Status::kOk);
+  EXPECT_EQ(size, writer.size());
+  EXPECT_EQ(fast, canonical);
+  hal::LidarScan decoded;
+  ASSERT_EQ(decode_lidar(std::span(fast).first(size), decoded), Status::kOk);
+  EXPECT_EQ(decoded.range_m, scan.range_m);
+  EXPECT_EQ(decoded.beam_interval.ns, scan.beam_interval.ns);
+  EXPECT_EQ(decode_lidar(std::span(fast).first(size - 1), decoded), Status::kCorrupt);
+  scan.beam_count = hal::kMaxLidarBeams + 1;
+  EXPECT_EQ(encode_lidar(scan, fast, size), Status::kInvalid);
+}
+
 TEST(TickRecord, ImpossibleDepthSizesAreRefused) {
   auto frame = std::make_unique<hal::DepthFrame>();
   std::vector<std::uint8_t> bytes(kMaxDepthBytes);
