@@ -25,10 +25,13 @@ class Backend {
   virtual hal::Board board() = 0;
 
   // Ground truth, for figures and pictures only. Without it the rest answers zeros.
+  // What moves: "robot", or which of the simulated plants.
+  virtual std::string plant() const { return "robot"; }
   virtual bool has_truth() const { return false; }
   virtual sim::Truth truth() const { return {}; }
   virtual double ground_m(double, double) const { return 0; }
   virtual sim::TerrainFigures terrain() const { return {}; }
+  virtual std::vector<sim::SolidTruth> solids() const { return {}; }
 };
 
 // Names in this build.

@@ -16,18 +16,22 @@ sim::SimulatorConfig simulator_config(const Config& config) {
 class SimulatorBackend final : public Backend {
  public:
   SimulatorBackend(const RunRequest& request, const Config& config)
-      : simulator_(config.robot, config.world, simulator_config(config), request.seed) {}
+      : simulator_(config.robot, config.world, simulator_config(config), request.seed),
+        plant_(sim::kPlantNames[static_cast<std::size_t>(config.sim.plant)]) {}
 
   hal::Board board() override { return simulator_.board(); }
+  std::string plant() const override { return plant_; }
   bool has_truth() const override { return true; }
   sim::Truth truth() const override { return simulator_.truth(); }
   double ground_m(double x_m, double y_m) const override {
     return simulator_.terrain_height_m(x_m, y_m);
   }
   sim::TerrainFigures terrain() const override { return simulator_.terrain_figures(); }
+  std::vector<sim::SolidTruth> solids() const override { return simulator_.solids(); }
 
  private:
   sim::Simulator simulator_;
+  std::string plant_;
 };
 
 }  // namespace

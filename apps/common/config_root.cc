@@ -228,18 +228,36 @@ fs::path config_folder() {
 
 namespace {
 
-void check_gait(const autonomy::AutonomyConfig& config, ConfigIssues& issues) {
+void check_mission(const Config& root, ConfigIssues& issues) {
+  const autonomy::AutonomyConfig& config = root.autonomy;
+  const bool navigates = config.mission.kind == autonomy::MissionConfig::Kind::kNavigate;
+  if (navigates && (!config.navigation.present || root.robot.lidar.rate_Hz <= 0)) {
+    issues.push_back(
+        {{"--mission", 0},
+         "mission.kind",
+         "navigate, but the robot's file has no laser scanner or no group navigation"});
+  }
+  if (config.own_gaits && (config.mission.jump || config.mission.recover)) {
+    issues.push_back(
+        {{"--set", 0}, "sim.plant", "fast, but the mission jumps or gets up: that takes legs"});
+  }
   if (!config.control.static_walk.enabled || !config.mission.jump) return;
   issues.push_back({{"--mission", 0},
                     "mission.jump",
                     "true, but the robot walks one leg at a time (control.static_walk.enabled)"});
 }
 
+// A body that moves its own legs is spoken to in velocities.
+void tell_plant(Config& config) {
+  config.autonomy.own_gaits = config.sim.plant == sim::PlantKind::kFast;
+}
+
 void take_goal_from_world(Config& config, std::uint64_t seed) {
   config.world.goal_x_m = sim::goal_of(config.world, seed);
   autonomy::MissionConfig& mission = config.autonomy.mission;
-  const bool crosses = mission.kind == autonomy::MissionConfig::Kind::kCross;
-  if (crosses && mission.waypoints.empty() && mission.goal_x_m == 0.0) {
+  using Kind = autonomy::MissionConfig::Kind;
+  const bool goes = mission.kind == Kind::kCross || mission.kind == Kind::kNavigate;
+  if (goes && mission.waypoints.empty() && mission.goal_x_m == 0.0) {
     mission.goal_x_m = config.world.goal_x_m;
   }
 }
@@ -272,8 +290,9 @@ Config load_config_parts(const RunRequest& request, const fs::path& folder, Conf
   Config config;
   ConfigIssues read;
   ConfigReader::read(tree, config, read);
+  tell_plant(config);
   if (read.empty()) check_motions(config.autonomy.motions, config.robot, read);
-  if (read.empty()) check_gait(config.autonomy, read);
+  if (read.empty()) check_mission(config, read);
   // Also of a robot's file alone.
   if (!request.robot.empty() && std::all_of(read.begin(), read.end(), is_missing_group)) {
     check_stereo(tree, config.robot, config.autonomy.stereo, config.sim.stereo.present, read);
@@ -314,6 +333,7 @@ void read_record_text(const std::string& text, RunRequest& request, Config& conf
   RecordedRun recorded{{request}};
   ConfigReader::read(head, recorded, issues);
   ConfigReader::read(tree, config, issues);
+  tell_plant(config);
 }
 
 }  // namespace surefoot::apps

@@ -7,6 +7,7 @@
 #include "apps/common/drawing.h"
 #include "apps/common/height_grid.h"
 #include "apps/common/perceived_map.h"
+#include "apps/common/plan_log.h"
 #include "apps/common/run_log.h"
 #include "core/robot/robot_model.h"
 #include "core/runtime/statistics.h"
@@ -24,6 +25,15 @@ struct TerrainFigure {
   double lane_half_width_m = 0;  // 0: no lane
 };
 
+struct NavigationFigure {
+  std::vector<sim::SolidTruth> solids;  // none without ground truth
+  std::vector<PlanSample> plans;
+  Alignment O_in_W;
+  double goal_x_m = 0;  // W, on y = 0
+};
+
+// The way from above, and three moments of it.
+Drawing navigation_figure(const RunLog& log, const NavigationFigure& figure);
 // True ground with the traces of body and feet, perceived map, its classes with the footholds
 // (paper 002, figures 4 and 8), and the difference of the heights.
 Drawing terrain_figure(const RunLog& log, const TerrainFigure& figure);

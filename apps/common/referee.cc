@@ -41,6 +41,7 @@ const char* describe(StopReason reason) {
     case StopReason::kDriveFault: return "a drive reported an error";
     case StopReason::kRecoveryFailed: return "fell, and no roll brought it back on its belly";
     case StopReason::kLiveLock: return "walks without getting nearer to its goal";
+    case StopReason::kNoPath: return "no way to the goal is left open";
     case StopReason::kNoJump: return "an edge ahead, and the jump was refused";
   }
   return "";
@@ -51,6 +52,7 @@ namespace {
 Outcome outcome_of(StopReason reason) {
   switch (reason) {
     case StopReason::kNoJump:
+    case StopReason::kNoPath:
     case StopReason::kNoFoothold: return Outcome::kNoPath;
     case StopReason::kMissionTimeout: return Outcome::kTimeout;
     case StopReason::kLiveLock: return Outcome::kLiveLock;

@@ -9,6 +9,7 @@
 
 #include "apps/common/backend.h"
 #include "apps/common/perceived_map.h"
+#include "apps/common/plan_log.h"
 #include "apps/common/progress.h"
 #include "apps/common/report.h"
 #include "apps/common/run_loop.h"
@@ -28,6 +29,10 @@ namespace fs = std::filesystem;
 
 // Ticks that count as start-up: they fault in code that nothing has touched before.
 constexpr std::uint64_t kWarmUpTicks = 50;
+// Mission navigate: at the goal is who stands within what it was told, a step, and the drift of
+// dead reckoning on the way.
+constexpr double kGoalSlack_m = 0.3;
+constexpr double kDrift = 0.015;
 constexpr double kCorridorHalfWidth_m = 0.25;  // of the map's error: a little wider than the feet
 
 // out/WORLD-MISSION-sSEED, with -2, -3 … behind where it exists.
@@ -42,6 +47,10 @@ fs::path new_folder(const RunRequest& request) {
   return folder;
 }
 
+bool navigates(const Config& config) {
+  return config.autonomy.mission.kind == autonomy::MissionConfig::Kind::kNavigate;
+}
+
 RefereeRules rules_for(const Config& config, bool has_truth) {
   RefereeRules rules;
   rules.has_truth = has_truth;
@@ -49,6 +58,10 @@ RefereeRules rules_for(const Config& config, bool has_truth) {
   rules.goal_x_m = goal_x_m(config);
   rules.may_recover = config.autonomy.mission.recover;
   rules.lane_half_width_m = lane_half_width_m(config);
+  if (navigates(config)) {
+    rules.goal_tolerance_m = config.autonomy.navigation.planner.follow.arrive_m + kGoalSlack_m +
+                             kDrift * config.autonomy.mission.goal_x_m;
+  }
   return rules;
 }
 
@@ -69,8 +82,9 @@ class Run {
     fs::create_directories(folder_);
     hal::Board board = backend_->board();
     board.stopwatch = &stopwatch_;
+    if (!navigates(config_)) board.lidar = nullptr;  // nobody would look at it
     if (options_.record) board.record = open_record();
-    if (options_.can_log) {
+    if (options_.can_log && board.can != nullptr) {
       can_log_ = std::make_unique<hal::FileCanLog>((folder_ / "can.log").string());
       can_port_.emplace(*board.can, *board.clock, *can_log_);
       board.can = &*can_port_;
@@ -90,8 +104,8 @@ class Run {
     Progress progress(options_.quiet);
     block_signals();
     hal::lock_memory();
-    const LoopResult loop =
-        run_loop(stack_, *backend_, *log_, referee, progress, max_ticks_, options_.realtime);
+    const LoopResult loop = run_loop(stack_, *backend_, {*log_, plans_, referee, progress},
+                                     max_ticks_, options_.realtime);
     progress.finish();
     collect(referee, loop);
     return facts_.verdict.outcome;
@@ -184,6 +198,9 @@ class Run {
     facts_.localisation = stack_.autonomy().localisation().counters();
     facts_.fill = stack_.autonomy().terrain().counters();
     facts_.static_walk = stack_.autonomy().static_walk().counters();
+    facts_.navigation = executive.outputs().telemetry.navigation;
+    facts_.least_clearance_m = least_clearance_m(*log_);
+    facts_.plant = backend_->plant();
     facts_.tracking = stack_.autonomy().estimator().drift().counters();
   }
 
@@ -209,7 +226,8 @@ class Run {
     const TrueGround true_ground = backend_->has_truth() ? ground() : TrueGround{};
     std::string problem;
     if (!write_report(folder_, facts_,
-                      run_pictures(*log_, config_, mapper, true_ground, facts_.tasks),
+                      run_pictures(*log_, config_, mapper, true_ground, backend_->solids(),
+                                   plans_.samples(), facts_.tasks),
                       config_text(config_), problem)) {
       throw std::runtime_error(problem);
     }
@@ -227,6 +245,7 @@ class Run {
   std::unique_ptr<hal::FileCanLog> can_log_;
   std::optional<hal::LoggedCanPort> can_port_;
   std::unique_ptr<RunLog> log_;
+  PlanLog plans_;
   std::uint64_t max_ticks_ = 0;
   RunFacts facts_;
 };

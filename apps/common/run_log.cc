@@ -7,13 +7,13 @@ namespace surefoot::apps {
 
 using autonomy::MissionPhase;
 
-RunLog::RunLog(std::size_t capacity, bool has_truth) : has_truth_(has_truth) {
-  samples_.resize(capacity);  // touches every page
-  samples_.clear();
+RunLog::RunLog(std::size_t capacity, bool has_truth) : has_truth_(has_truth), capacity_(capacity) {
+  constexpr std::size_t kAtFirst = 4096;  // half a minute
+  samples_.reserve(std::min(capacity, kAtFirst));
 }
 
 void RunLog::add(TimeNs stamp, const autonomy::Telemetry& telemetry, const sim::Truth* truth) {
-  if (samples_.size() == samples_.capacity()) {
+  if (samples_.size() == capacity_) {
     ++dropped_;
     return;
   }

@@ -1,5 +1,5 @@
 // What a run leaves for figures and pictures: samples of what the autonomy showed and of what the
-// simulator knows, in storage that is allocated and touched before the first tick.
+// simulator knows. It grows with the run: ten minutes take half a gigabyte.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ class RunLog {
  public:
   RunLog(std::size_t capacity, bool has_truth);
 
-  // Full: the sample is dropped and counted. Never allocates.
+  // Between ticks: may allocate. Full: the sample is dropped and counted.
   void add(TimeNs stamp, const autonomy::Telemetry& telemetry, const sim::Truth* truth);
 
   bool has_truth() const { return has_truth_; }
@@ -48,6 +48,7 @@ class RunLog {
 
  private:
   bool has_truth_;
+  std::size_t capacity_;
   std::uint64_t dropped_ = 0;
   std::vector<RunSample> samples_;
 };

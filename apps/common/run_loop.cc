@@ -27,8 +27,8 @@ void block_signals() {
   sigprocmask(SIG_BLOCK, &set, nullptr);
 }
 
-LoopResult run_loop(Stack& stack, const Backend& backend, RunLog& log, Referee& referee,
-                    Progress& progress, std::uint64_t max_ticks, bool realtime) {
+LoopResult run_loop(Stack& stack, const Backend& backend, const RunWatchers& watchers,
+                    std::uint64_t max_ticks, bool realtime) {
   LoopResult result;
   hal::MonotonicClock wall;
   runtime::Executive& executive = stack.executive();
@@ -37,16 +37,17 @@ LoopResult run_loop(Stack& stack, const Backend& backend, RunLog& log, Referee& 
     if (!ok(result.status)) break;
     const autonomy::Telemetry& telemetry = executive.outputs().telemetry;
     const bool finished = stack.autonomy().finished();
+    watchers.plans.observe(executive.inputs().stamp, stack.autonomy());
     if (executive.ticks() % kTicksPerSample == 0 || finished) {
       const TimeNs now = executive.inputs().stamp;
       const sim::Truth truth = backend.truth();
-      log.add(now, telemetry, backend.has_truth() ? &truth : nullptr);
-      referee.observe(now, telemetry, truth);
-      progress.update(now, telemetry);
+      watchers.log.add(now, telemetry, backend.has_truth() ? &truth : nullptr);
+      watchers.referee.observe(now, telemetry, truth);
+      watchers.progress.update(now, telemetry);
       result.interrupted = asked_to_end();
       if (realtime) static_cast<void>(wall.wait_until(now));
     }
-    if (finished || referee.over() || result.interrupted) break;
+    if (finished || watchers.referee.over() || result.interrupted) break;
   }
   result.wall_time_s = wall.now().seconds();
   return result;

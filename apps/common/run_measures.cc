@@ -229,4 +229,12 @@ RunMeasures measure(const RunLog& log, double goal_x_m, double course_m) {
   return measures;
 }
 
+double least_clearance_m(const RunLog& log) {
+  double least_m = sim::kMaxClearance_m;
+  for (std::size_t i = log.walk_begin(); i < log.walk_end(); ++i) {
+    least_m = std::min(least_m, log.samples()[i].truth.clearance_m);
+  }
+  return least_m;
+}
+
 }  // namespace surefoot::apps

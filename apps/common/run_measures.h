@@ -49,6 +49,9 @@ struct RunMeasures {
 // length of the lines of a mission with waypoints, whose goal may lie where it started; 0: none.
 RunMeasures measure(const RunLog& log, double goal_x_m, double course_m = 0);
 
+// Least distance in plan while it walked between the robot's footprint and what stands there.
+double least_clearance_m(const RunLog& log);
+
 // standing_height_m: of the trunk over the feet's centres where the robot stands.
 RecoveryFigures measure_recovery(const RunLog& log, double standing_height_m,
                                  const std::array<double, robot::kJoints>& torque_limit_Nm);

@@ -22,7 +22,8 @@ double lane_half_width_m(const Config& config) {
 
 double goal_x_m(const Config& config) {
   const autonomy::MissionConfig& mission = config.autonomy.mission;
-  if (mission.kind != autonomy::MissionConfig::Kind::kCross) return -1.0;
+  using Kind = autonomy::MissionConfig::Kind;
+  if (mission.kind != Kind::kCross && mission.kind != Kind::kNavigate) return -1.0;
   return mission.waypoints.empty() ? mission.goal_x_m : mission.waypoints.back().x_m;
 }
 
@@ -38,6 +39,8 @@ double course_m(const Config& config) {
 
 std::vector<NamedDrawing> run_pictures(const RunLog& log, const Config& config,
                                        const mapping::Mapper& mapper, const TrueGround& ground,
+                                       const std::vector<sim::SolidTruth>& solids,
+                                       const std::vector<PlanSample>& plans,
                                        const std::vector<runtime::TaskReport>& tasks) {
   double length = goal_x_m(config);
   for (const autonomy::Waypoint& place : config.autonomy.mission.waypoints) {
@@ -69,6 +72,14 @@ std::vector<NamedDrawing> run_pictures(const RunLog& log, const Config& config,
       {"gait", "Four seconds from the middle of the walk.", gait_figure(log)},
       {"timing", "Execution times on this computer; they are not part of the run's hash.",
        timing_figure(tasks)}};
+  if (!plans.empty()) {
+    pictures.insert(
+        pictures.begin(),
+        {"navigation",
+         "Below: moments, with the points of the objects (red: of moving ones), the cost "
+         "map (dark: lethal), the plan (blue) and the robot (ring).",
+         navigation_figure(log, {solids, plans, terrain.O_in_W, terrain.goal_x_m})});
+  }
   if (has_jump(log)) {
     pictures.insert(pictures.begin() + 1,
                     {"jump",

@@ -5,6 +5,7 @@
 
 #include "apps/common/config_root.h"
 #include "apps/common/perceived_map.h"
+#include "apps/common/plan_log.h"
 #include "apps/common/report.h"
 #include "apps/common/run_log.h"
 #include "core/mapping/mapper.h"
@@ -19,9 +20,11 @@ double goal_x_m(const Config& config);
 // Length of the lines between the waypoints; 0: the mission has none.
 double course_m(const Config& config);
 
-// `ground` may be empty: then there is no true map.
+// `ground` may be empty: then there is no true map. solids, plans: of a mission that navigates.
 std::vector<NamedDrawing> run_pictures(const RunLog& log, const Config& config,
                                        const mapping::Mapper& mapper, const TrueGround& ground,
+                                       const std::vector<sim::SolidTruth>& solids,
+                                       const std::vector<PlanSample>& plans,
                                        const std::vector<runtime::TaskReport>& tasks);
 
 }  // namespace surefoot::apps

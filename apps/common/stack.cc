@@ -15,6 +15,8 @@ constexpr std::uint32_t kMappingBudget_us = 10000;
 constexpr std::uint32_t kStereoBudget_us = 120000;
 constexpr std::uint32_t kLocalisationBudget_us = 40000;
 constexpr std::uint32_t kTerrainBudget_us = 2000;  // a slice
+constexpr std::uint32_t kObjectsBudget_us = 5000;
+constexpr std::uint32_t kPlanningBudget_us = 50000;
 
 Autonomy& of(void* self) { return *static_cast<Autonomy*>(self); }
 
@@ -82,6 +84,19 @@ runtime::Task terrain_task(Autonomy& autonomy) {
       autonomy, "terrain", autonomy::kTerrainLatencyTicks, kTerrainBudget_us);
 }
 
+runtime::Task objects_task(Autonomy& autonomy) {
+  return slow_task<&Autonomy::begin_objects, &Autonomy::run_objects, &Autonomy::publish_objects>(
+      autonomy, "objects", autonomy::kObjectsLatencyTicks, kObjectsBudget_us);
+}
+
+runtime::Task planning_task(Autonomy& autonomy) {
+  runtime::Task task =
+      slow_task<&Autonomy::begin_planning, &Autonomy::run_planning, &Autonomy::publish_planning>(
+          autonomy, "planning", autonomy::kPlanningLatencyTicks, kPlanningBudget_us);
+  task.period_ticks = autonomy::kPlanningPeriodTicks;
+  return task;
+}
+
 }  // namespace
 
 Status Stack::start(const Config& config, const hal::Board& board, runtime::SlowTaskRunner& runner,
@@ -89,7 +104,8 @@ Status Stack::start(const Config& config, const hal::Board& board, runtime::Slow
   const Status ready = autonomy_.reset(config.robot, config.autonomy);
   if (!ok(ready)) return ready;
   tasks_ = {control_task(autonomy_),      mpc_task(autonomy_),     stereo_task(autonomy_),
-            localisation_task(autonomy_), mapping_task(autonomy_), terrain_task(autonomy_)};
+            localisation_task(autonomy_), mapping_task(autonomy_), terrain_task(autonomy_),
+            objects_task(autonomy_),      planning_task(autonomy_)};
   runtime::ExecutiveSetup setup;
   setup.board = board;
   setup.tasks = tasks_;
@@ -109,6 +125,8 @@ std::vector<MemoryRow> memory_table() {
       {"estimation", sizeof(estimation::Estimator) + sizeof(autonomy::PoseHistory)},
       {"control", sizeof(control::Locomotion) + sizeof(control::StaticWalk) +
                       sizeof(control::StandUp) + sizeof(autonomy::MpcTask)},
+      {"objects", sizeof(autonomy::ObjectTask)},
+      {"navigation", sizeof(navigation::Navigator)},
       {"jumping", sizeof(autonomy::JumpPilot)},
       {"actuation", sizeof(actuation::JointBus)},
       {"mission", sizeof(autonomy::Mission)},

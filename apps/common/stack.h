@@ -27,7 +27,7 @@ class Stack {
  private:
   autonomy::Autonomy autonomy_;
   runtime::Executive executive_;
-  std::array<runtime::Task, 6> tasks_{};
+  std::array<runtime::Task, 8> tasks_{};
 };
 
 struct MemoryRow {

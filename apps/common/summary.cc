@@ -54,6 +54,22 @@ Json jump_json(const JumpFigures& jump) {
           {"flight_s", jump.flight_s},       {"landing_speed_m_s", jump.landing_speed_m_s}};
 }
 
+Json navigation_json(const RunFacts& facts) {
+  const autonomy::NavigationTelemetry& navigation = facts.navigation;
+  return {{"reason", navigation::to_string(navigation.reason)},
+          {"scans", navigation.sight.scans},
+          {"scans_without_pose", navigation.sight.scans_without_pose},
+          {"scans_refused", navigation.sight.scans_refused},
+          {"windows", navigation.sight.windows},
+          {"plans", navigation.plans.plans},
+          {"plans_partial", navigation.plans.plans_partial},
+          {"plans_enclosed", navigation.plans.plans_enclosed},
+          {"plans_raw", navigation.plans.plans_raw},
+          {"plans_dropped", navigation.plans.plans_dropped},
+          {"steps_aside", navigation.plans.steps_aside},
+          {"least_clearance_m", facts.least_clearance_m}};
+}
+
 }  // namespace
 
 std::string hex16(std::uint64_t value) { return fmt::format("{:016x}", value); }
@@ -67,6 +83,7 @@ Json summary_json(const RunFacts& facts) {
   json["world"] = facts.request.world;
   json["mission"] = facts.request.mission;
   json["hal"] = facts.request.hal;
+  json["plant"] = facts.plant;
   json["seed"] = facts.request.seed;
   json["set"] = facts.request.sets;
   json["config_hash"] = hex16(facts.config_hash);
@@ -97,7 +114,17 @@ Json summary_json(const RunFacts& facts) {
                      {"cover", facts.terrain.cover},
                      {"boxes", facts.terrain.boxes},
                      {"bridged_cells", facts.terrain.bridged_cells},
-                     {"tiles", facts.terrain.tiles}};
+                     {"tiles", facts.terrain.tiles},
+                     {"area_m2", facts.terrain.area_m2},
+                     {"trunks", facts.terrain.trunks},
+                     {"boulders", facts.terrain.boulders},
+                     {"logs", facts.terrain.logs},
+                     {"walls", facts.terrain.walls},
+                     {"saplings", facts.terrain.saplings},
+                     {"walkers", facts.terrain.walkers},
+                     {"steepest_rad", facts.terrain.steepest_rad},
+                     {"roughness_rms_m", facts.terrain.roughness_rms_m},
+                     {"passage_width_m", facts.terrain.passage_width_m}};
   json["estimate"] = {{"end_error_m", m.estimate.end_error_m},
                       {"drift_percent", m.estimate.drift_percent},
                       {"rms_error_m", m.estimate.rms_error_m}};
@@ -121,6 +148,7 @@ Json summary_json(const RunFacts& facts) {
                   {"refused", facts.fill.refused},
                   {"filled", facts.fill.filled},
                   {"unknown", facts.fill.unknown}};
+  json["navigation"] = navigation_json(facts);
   json["memory"] = {{"static_bytes", facts.static_bytes},
                     {"heap_calls_after_start", facts.heap_calls},
                     {"page_faults_after_start", facts.page_faults}};

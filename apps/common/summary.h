@@ -29,6 +29,7 @@ struct RunFacts {
   JumpFigures jump;
   sim::TerrainFigures terrain;
   MapError map;
+  std::string plant = "robot";  // what moved: legged or fast, where it was simulated
   std::uint64_t static_bytes = 0;
   std::uint64_t heap_calls = 0;
   std::uint64_t page_faults = 0;
@@ -41,7 +42,9 @@ struct RunFacts {
   estimation::TrackingCounters tracking;
   control::StaticWalkCounters static_walk;
   autonomy::LocalisationCounters localisation;
-  autonomy::TerrainCounters fill;    // of the map that was published last
+  autonomy::TerrainCounters fill;  // of the map that was published last
+  autonomy::NavigationTelemetry navigation;
+  double least_clearance_m = 0;      // mission navigate, by the truth
   autonomy::StereoTelemetry stereo;  // valid_share: the mean over all pairs
 };
 

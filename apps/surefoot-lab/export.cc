@@ -130,8 +130,10 @@ int to_html(const std::string& record, const fs::path& folder, Stack& stack) {
   const double timeout_s = config.autonomy.mission.timeout_s;
   RunLog log(static_cast<std::size_t>((timeout_s + 5) / autonomy::kTickPeriod.seconds()) / kEvery,
              false);
+  PlanLog plans;
   const runtime::Executive& executive = stack.executive();
   while (ok(stack.executive().run_tick())) {
+    plans.observe(executive.inputs().stamp, stack.autonomy());
     if (executive.ticks() % kEvery != 0) continue;
     log.add(executive.inputs().stamp, executive.outputs().telemetry, nullptr);
   }
@@ -146,8 +148,8 @@ int to_html(const std::string& record, const fs::path& folder, Stack& stack) {
   facts.sim_time_s = static_cast<double>(facts.ticks) * autonomy::kTickPeriod.seconds();
   facts.static_bytes = memory_table().back().bytes;
   std::string problem;
-  const auto pictures =
-      run_pictures(log, config, stack.autonomy().map().mapper(), TrueGround{}, {});
+  const auto pictures = run_pictures(log, config, stack.autonomy().map().mapper(), TrueGround{}, {},
+                                     plans.samples(), {});
   if (!write_report(folder, facts, pictures, config_text(config), problem)) {
     std::fputs((problem + "\n").c_str(), stderr);
     return 3;

@@ -37,6 +37,7 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   const double search_limit_m = mapping::kMaxSearchRadius_cells * config.mapping.cell_size_m;
   if (config.control.foothold.search_radius_m > search_limit_m) return Status::kOutOfRange;
   if (config.control.static_walk.enabled && config.mission.jump) return Status::kInvalid;
+  own_gaits_.reset(config.own_gaits, config.safety.drive_silence_s);
   const Status wired = bus_.configure(model, actuation);
   if (!ok(wired)) return wired;
   const mapping::TraversabilityLimits limits = mapping::traversability_limits(
@@ -51,6 +52,8 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   if (!ok(located)) return located;
   const Status completed = terrain_.reset(config.terrain, config.mapping.cell_size_m);
   if (!ok(completed)) return completed;
+  const Status navigable = reset_navigation();
+  if (!ok(navigable)) return navigable;
   avoidance_.reset(config.obstacles, footprint(model));
   velocity_ = control::VelocityCommand{};
   changed_side_ = false;
@@ -88,13 +91,17 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
 void Autonomy::run_control() {
   receive();
   const estimation::RobotState& state = estimator_.state();
+  navigate(state);
   MissionFacts facts;
-  facts.drives_ready = bus_.all_valid() && estimator_.ready();
+  facts.at_goal = navigator_.status().state == navigation::NavigationState::kArrived;
+  facts.navigation = navigation_command_;
+  facts.drives_ready =
+      estimator_.ready() && (own_gaits_.enabled() ? own_gaits_.standing() : bus_.all_valid());
   facts.must_recover = must_recover(state);
   facts.fallen = has_fallen(state);
   facts.recovered = recovery_.done();
   facts.recovery_failed = recovery_.failed();
-  facts.stand_up_done = stand_up_.done();
+  facts.stand_up_done = own_gaits_.standing() || stand_up_.done();
   facts.at_rest = at_rest();
   facts.jump_refused = jump_pilot_.given_up();
   facts.fault = find_fault();
@@ -113,8 +120,14 @@ void Autonomy::receive() {
   // zero, and one that has just fallen still sinks.
   const bool recovering = mission_.phase() == MissionPhase::kRecover;
   const bool still = mission_.phase() == MissionPhase::kEnableDrives;
-  imu_refused_ += estimator_.update(inputs_->stamp, {inputs_->imu.data(), inputs_->imu.size()},
-                                    bus_.measured(), gait_phases(), still);
+  const std::span<const hal::ImuSample> imu(inputs_->imu.data(), inputs_->imu.size());
+  if (own_gaits_.enabled()) {
+    const std::span<const hal::GaitSample> gait(inputs_->gait.data(), inputs_->gait.size());
+    imu_refused_ += estimator_.update(inputs_->stamp, imu, gait, still);
+    own_gaits_.update(estimator_.gait(), !gait.empty(), tick_s_);
+  } else {
+    imu_refused_ += estimator_.update(inputs_->stamp, imu, bus_.measured(), gait_phases(), still);
+  }
   // Folded on the ground no foot bears load: the accelerometer alone would carry the trunk away.
   if (still || recovering) estimator_.place(footing_O_m_);
   if (walking_ready_) {
@@ -140,11 +153,14 @@ StopReason Autonomy::find_fault() {
   }
   if (imu_silent_s_ > config_.safety.imu_silence_s) return StopReason::kImuSilent;
   if (mission_.phase() == MissionPhase::kEnableDrives) return StopReason::kNone;
-  if (bus_.faulty_joints() != 0) return StopReason::kDriveFault;
-  if (bus_.silent_joints() != 0) return StopReason::kDriveSilent;
+  if (own_gaits_.silent()) return StopReason::kDriveSilent;
+  if (!own_gaits_.enabled() && bus_.faulty_joints() != 0) return StopReason::kDriveFault;
+  if (!own_gaits_.enabled() && bus_.silent_joints() != 0) return StopReason::kDriveSilent;
   if (mission_.phase() == MissionPhase::kRecover) return StopReason::kNone;
-  if (is_tilted(estimator_.state())) return StopReason::kTilt;
+  if (own_gaits_.fallen() || is_tilted(estimator_.state())) return StopReason::kTilt;
   if (!walking_ready_) return StopReason::kNone;
+  const StopReason lost = navigation_fault();
+  if (lost != StopReason::kNone) return lost;
   if (blocked_s() > config_.safety.foothold_patience_s) return StopReason::kNoFoothold;
   return StopReason::kNone;
 }
@@ -161,6 +177,7 @@ std::array<estimation::GaitPhase, robot::kLegs> Autonomy::gait_phases() const {
 
 // It does not lie on its belly with folded legs: StandUp alone would not do.
 bool Autonomy::must_recover(const estimation::RobotState& state) const {
+  if (own_gaits_.enabled()) return false;
   const control::RecoveryConfig& config = config_.control.recovery;
   if (control::lie_of(state.R_OB, config.upright_tilt_rad) != control::Lie::kUpright) return true;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
@@ -179,6 +196,7 @@ bool Autonomy::is_tilted(const estimation::RobotState& state) const {
 
 // Tilted, or down on the belly with the feet beside it.
 bool Autonomy::has_fallen(const estimation::RobotState& state) {
+  if (own_gaits_.enabled()) return own_gaits_.fallen() || is_tilted(state);
   const control::RecoveryConfig& config = config_.control.recovery;
   const bool low = walking_ready_ && height_over_feet_m(state) < config.collapsed_height_m;
   collapsed_s_ = low ? collapsed_s_ + tick_s_ : 0.0;
@@ -188,6 +206,10 @@ bool Autonomy::has_fallen(const estimation::RobotState& state) {
 void Autonomy::note_footing(const estimation::RobotState& state) {
   constexpr double kUprightCosine = 0.95;  // 18 degrees
   if (state.R_OB(2, 2) < kUprightCosine) return;
+  if (own_gaits_.enabled()) {
+    footing_O_m_ = state.p_OB_m - Vector3(0.0, 0.0, own_gaits_.height_m());
+    return;
+  }
   double ground_m = 0;
   int feet = 0;
   for (const estimation::FootState& foot : state.feet) {
@@ -221,12 +243,17 @@ void Autonomy::start_stand_up() {
   stand_up_.start(bus_.measured());
 }
 
+double Autonomy::height_over_ground_m(const estimation::RobotState& state) const {
+  if (own_gaits_.enabled()) return own_gaits_.height_m();
+  return height_over_feet_m(state) + model_.foot_radius_m;
+}
+
 // Stand-up is over: O gets its place on the ground below the trunk, where the feet say that it is,
 // and the start pad enters the map. After a fall O stays as it was and the tracking camera says
 // where the robot is in it; without one the last footing has to do, the heading is the gyro's. The
 // map around the robot, off by what they do not know, is seen anew.
 void Autonomy::begin_walking(const estimation::RobotState& state) {
-  const Vector3 over_ground_m(0.0, 0.0, height_over_feet_m(state) + model_.foot_radius_m);
+  const Vector3 over_ground_m(0.0, 0.0, height_over_ground_m(state));
   if (has_stood_ && ok(estimator_.relocate(state.stamp))) {
     footing_O_m_ = state.p_OB_m - over_ground_m;
   } else {
@@ -256,11 +283,12 @@ void Autonomy::begin_walking(const estimation::RobotState& state) {
 // The operator vouches for a level pad: what the accelerometer takes for up is compared with it.
 void Autonomy::level_on_pad() {
   on_pad_ = on_pad_ && mission_.phase() == MissionPhase::kSettle;
-  if (!on_pad_ || config_.start_pad.level_gain_1_s <= 0) return;
+  if (!on_pad_ || own_gaits_.enabled() || config_.start_pad.level_gain_1_s <= 0) return;
   estimator_.level_on_pad(math::clamp(config_.start_pad.level_gain_1_s * tick_s_, 0.0, 1.0));
 }
 
 void Autonomy::act(const estimation::RobotState& state) {
+  outputs_.gait = hal::GaitCommand{};
   switch (mission_.phase()) {
     case MissionPhase::kEnableDrives: break;
     case MissionPhase::kRecover: recover(state); break;
@@ -304,10 +332,12 @@ control::VelocityCommand Autonomy::avoiding(const estimation::RobotState& state)
 
 // Locomotion, unless the pilot jumps.
 bool Autonomy::at_rest() const {
+  if (own_gaits_.enabled()) return own_gaits_.at_rest();
   return walks_statically() ? static_walk_.at_rest() : locomotion_.at_rest();
 }
 
 double Autonomy::blocked_s() const {
+  if (own_gaits_.enabled()) return 0.0;
   return walks_statically() ? static_walk_.blocked_s() : locomotion_.blocked_s();
 }
 
@@ -317,6 +347,11 @@ const std::array<control::LegStatus, robot::kLegs>& Autonomy::legs() const {
 
 void Autonomy::walk(const estimation::RobotState& state) {
   const bool walks = mission_.phase() == MissionPhase::kWalk;
+  if (own_gaits_.enabled()) {
+    const control::WalkCommand command = walk_command(state);
+    outputs_.gait = own_gaits_.command(command.gait, command.velocity);
+    return;
+  }
   if (walks_statically()) {
     const control::WalkCommand command = walk_command(state);
     commands_ = static_walk_.update(state, window(), terrain_.enabled() ? &terrain_.map() : nullptr,
@@ -357,6 +392,7 @@ bool Autonomy::locomotion_acts() const {
 
 void Autonomy::send() {
   outputs_.can.clear();
+  if (own_gaits_.enabled()) return;
   if (mission_.phase() == MissionPhase::kEnableDrives) {
     if (!ok(bus_.enable(outputs_.can))) ++encode_refused_;
     return;
@@ -376,7 +412,7 @@ void Autonomy::watch(const estimation::RobotState& state) {
 }
 
 bool Autonomy::begin_mpc(const TickInputs& inputs) {
-  if (walks_statically()) return false;
+  if (walks_statically() || own_gaits_.enabled()) return false;
   if (!walking_ready_ || !locomotion_acts() || jump_pilot_.jumps()) return false;
   locomotion_.plan(estimator_.state(), mpc_.problem());
   mpc_.release(inputs.stamp);

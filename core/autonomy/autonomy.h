@@ -13,6 +13,8 @@
 #include "core/autonomy/map_task.h"
 #include "core/autonomy/mission.h"
 #include "core/autonomy/mpc_task.h"
+#include "core/autonomy/object_task.h"
+#include "core/autonomy/own_gaits.h"
 #include "core/autonomy/pose_history.h"
 #include "core/autonomy/stereo_task.h"
 #include "core/autonomy/terrain_task.h"
@@ -22,6 +24,7 @@
 #include "core/control/stand_up.h"
 #include "core/control/static_walk.h"
 #include "core/estimation/estimator.h"
+#include "core/navigation/navigator.h"
 #include "core/obstacles/avoidance.h"
 
 namespace surefoot::autonomy {
@@ -32,6 +35,9 @@ inline constexpr std::uint32_t kMapLatencyTicks =
 
 inline constexpr std::uint32_t kTerrainLatencyTicks = 1;  // of a slice
 
+inline constexpr std::uint32_t kObjectsLatencyTicks = 5;        // 10 ms from a scan to its objects
+inline constexpr std::uint32_t kPlanningPeriodTicks = 500;      // a plan a second
+inline constexpr std::uint32_t kPlanningLatencyTicks = 50;      // 100 ms to make it
 inline constexpr std::uint32_t kStereoLatencyTicks = 60;        // 120 ms to match a pair
 inline constexpr std::uint32_t kLocalisationLatencyTicks = 20;  // 40 ms to register a picture
 
@@ -71,6 +77,16 @@ class Autonomy {
   void run_terrain() { terrain_.run(); }
   void publish_terrain() { terrain_.publish(); }
 
+  // The objects task: after the mapping task, whose window it takes in the same tick.
+  bool begin_objects(const TickInputs& inputs);
+  void run_objects() { objects_.run(); }
+  void publish_objects() { objects_.publish(); }
+
+  // The planning task of mission navigate, with the objects as they are published.
+  bool begin_planning(const TickInputs& inputs);
+  void run_planning() { navigator_.run(); }
+  void publish_planning() { navigator_.publish(); }
+
   bool finished() const { return mission_.finished(); }
   const Mission& mission() const { return mission_; }
   const estimation::Estimator& estimator() const { return estimator_; }
@@ -78,12 +94,15 @@ class Autonomy {
   const StereoTask& stereo() const { return stereo_; }
   const LocalisationTask& localisation() const { return localisation_; }
   const TerrainTask& terrain() const { return terrain_; }
+  const ObjectTask& objects() const { return objects_; }
+  const navigation::Navigator& navigator() const { return navigator_; }
   const control::StaticWalk& static_walk() const { return static_walk_; }
   const actuation::JointBus& joint_bus() const { return bus_; }
 
  private:
   void receive();
   void receive_poses();
+  double height_over_ground_m(const estimation::RobotState& state) const;
   StopReason find_fault();
   void act(const estimation::RobotState& state);
   bool locomotion_acts() const;
@@ -112,6 +131,11 @@ class Autonomy {
   void report_stereo();
   void report_localisation();
   void report_terrain();
+  void report_navigation();
+  Status reset_navigation();
+  void follow_slope(const estimation::RobotState& state);
+  void navigate(const estimation::RobotState& state);
+  StopReason navigation_fault() const;
   void level_on_pad();
   struct Sight {
     const hal::DepthFrame* frame = nullptr;
@@ -125,6 +149,7 @@ class Autonomy {
   TickOutputs outputs_;
 
   actuation::JointBus bus_;
+  OwnGaits own_gaits_;
   estimation::Estimator estimator_;
   PoseHistory history_;
   MapTask map_;
@@ -139,6 +164,12 @@ class Autonomy {
   control::StaticWalk static_walk_;
   JumpPilot jump_pilot_;
   MpcTask mpc_;
+  ObjectTask objects_;
+  navigation::Navigator navigator_;
+  bool navigates_ = false;
+  control::VelocityCommand navigation_command_;
+  Vector2 slope_ = Vector2::Zero();  // of the ground under the trunk: dz/dx, dz/dy in O
+  double blind_s_ = 0;               // since the last scan
   obstacles::Avoidance avoidance_;
   control::VelocityCommand velocity_;  // what locomotion was told last
   bool changed_side_ = false;          // for the present standstill

@@ -31,6 +31,7 @@ void Autonomy::report(const estimation::RobotState& state) {
   report_stereo();
   report_localisation();
   report_terrain();
+  report_navigation();
   telemetry.depth_frames_mapped = map_.counters().frames_integrated;
   telemetry.map_digest = map_.window_digest();
   const estimation::DriftEstimator& drift = estimator_.drift();

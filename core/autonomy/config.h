@@ -4,6 +4,7 @@
 #include "core/actuation/joint_bus.h"
 #include "core/autonomy/jump_pilot_config.h"
 #include "core/autonomy/localisation_config.h"
+#include "core/autonomy/navigation_config.h"
 #include "core/autonomy/stereo_config.h"
 #include "core/autonomy/terrain_config.h"
 #include "core/base/fixed_vector.h"
@@ -85,8 +86,8 @@ struct Waypoint {
 inline constexpr std::size_t kMaxWaypoints = 16;
 
 struct MissionConfig {
-  enum class Kind : std::uint8_t { kStand = 0, kCross, kScript };
-  static constexpr const char* kKindNames[] = {"stand", "cross", "script"};
+  enum class Kind : std::uint8_t { kStand = 0, kCross, kScript, kNavigate };
+  static constexpr const char* kKindNames[] = {"stand", "cross", "script", "navigate"};
 
   Kind kind = Kind::kStand;
   control::GaitKind gait = control::GaitKind::kTrot;  // cross: how the legs move
@@ -139,6 +140,7 @@ struct MissionConfig {
 };
 
 struct AutonomyConfig {
+  bool own_gaits = false;  // the body moves its own legs (hal::GaitPort); by the plant, not a key
   actuation::ActuationParameters actuation;
   estimation::EstimationConfig estimation;
   mapping::MappingConfig mapping;
@@ -152,6 +154,7 @@ struct AutonomyConfig {
   StereoConfig stereo;              // where the robot has a stereo camera
   LocalisationConfig localisation;  // where pictures are registered with each other
   TerrainConfig terrain;            // where footsteps are planned on completed ground
+  NavigationTaskConfig navigation;  // where the robot has a laser scanner
   MissionConfig mission;
 
   template <class Self, class Visitor>
@@ -169,6 +172,7 @@ struct AutonomyConfig {
     visit.optional("stereo", self.stereo);
     visit.optional("localisation", self.localisation);
     visit.optional("terrain", self.terrain);
+    visit.optional("navigation", self.navigation);
     visit.group("mission", self.mission);
   }
 };

@@ -139,6 +139,7 @@ void Mission::update(const estimation::RobotState& state, const MissionFacts& fa
     case MissionPhase::kWalk:
       if (facts.jump_refused) return stop(StopReason::kNoJump);
       if (config_.kind == MissionConfig::Kind::kScript) return follow_script(state, step_s);
+      if (config_.kind == MissionConfig::Kind::kNavigate) return navigate(facts);
       return cross(state, step_s);
     case MissionPhase::kArrived:
     case MissionPhase::kStopped: break;
@@ -149,6 +150,12 @@ void Mission::arrive() {
   command_ = control::VelocityCommand{};
   rested_s_ = 0;
   enter(MissionPhase::kArrived);
+}
+
+// What ends it short of the goal comes as a fault.
+void Mission::navigate(const MissionFacts& facts) {
+  if (facts.at_goal) return arrive();
+  command_ = facts.navigation;
 }
 
 // Along the line in hand to its end, then the next.

@@ -17,8 +17,10 @@ struct MissionFacts {
   bool recovered = false;
   bool recovery_failed = false;
   bool stand_up_done = false;
-  bool at_rest = false;       // on all feet, no step due
-  bool jump_refused = false;  // an edge ahead, and the pilot has given up
+  bool at_rest = false;                 // on all feet, no step due
+  bool jump_refused = false;            // an edge ahead, and the pilot has given up
+  bool at_goal = false;                 // mission navigate: the navigator says so, likewise
+  control::VelocityCommand navigation;  // its command
   StopReason fault = StopReason::kNone;
 };
 
@@ -62,6 +64,7 @@ class Mission {
   void stop(StopReason reason);
   void arrive();
   void cross(const estimation::RobotState& state, double step_s);
+  void navigate(const MissionFacts& facts);
   void follow_script(const estimation::RobotState& state, double step_s);
   void begin_line();
   void begin_line_here(const estimation::RobotState& state);

@@ -52,6 +52,11 @@ void BodyStateEstimator::update(const Vector3& acceleration_O_m_s2,
   carried_ = landmark_[0] || landmark_[1] || landmark_[2] || landmark_[3];
 }
 
+void BodyStateEstimator::carry(const Vector3& v_OB_m_s, double step_s) {
+  v_O_m_s_ = v_OB_m_s;
+  p_O_m_ += step_s * v_OB_m_s;
+}
+
 void BodyStateEstimator::move(const Vector3& shift_O_m, double yaw_rad) {
   const Matrix3 turn = geometry::rotation_z(yaw_rad);
   for (Vector3& foot : feet_O_m_) foot = p_O_m_ + shift_O_m + turn * (foot - p_O_m_);

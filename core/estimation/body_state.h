@@ -44,6 +44,9 @@ class BodyStateEstimator {
   void update(const Vector3& acceleration_O_m_s2,
               const std::array<FootObservation, robot::kLegs>& feet, double step_s);
 
+  // In place of update(): another's odometry says how the trunk moves, feet are not known.
+  void carry(const Vector3& v_OB_m_s, double step_s);
+
   // Moves trunk and feet together: O's place and heading under them change, their relation does
   // not.
   void move(const Vector3& shift_O_m, double yaw_rad);

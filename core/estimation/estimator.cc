@@ -15,6 +15,8 @@ void Estimator::reset(const EstimationConfig& config, const robot::RobotModel& m
   camera_ = CameraMount(model.tracking_camera);
   drift_.reset(config.tracking);
   relocation_.reset();
+  has_gait_ = false;
+  gait_ = hal::GaitSample{};
   state_ = RobotState{};
 }
 
@@ -55,21 +57,27 @@ void Estimator::place_feet() {
   for (FootState& foot : state_.feet) foot.p_O_m = state_.p_OB_m + state_.R_OB * foot.p_B_m;
 }
 
-std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
-                              const std::array<actuation::JointState, robot::kJoints>& joints,
-                              const std::array<GaitPhase, robot::kLegs>& gait, bool lying_still) {
+std::size_t Estimator::observe_attitude(std::span<const hal::ImuSample> imu, bool lying_still,
+                                        bool carried) {
   std::size_t refused = 0;
   for (const hal::ImuSample& sample : imu) {
-    if (!ok(attitude_.update(sample, lying_still, body_.carried()))) ++refused;
+    if (!ok(attitude_.update(sample, lying_still, carried))) ++refused;
   }
-  state_.stamp = stamp;
-  state_.joints = joints;
   if (!attitude_.initialised()) return refused;
   state_.q_OB = attitude_.q_OB();
   state_.R_OB = attitude_.R_OB();
   state_.angular_velocity_B_rad_s = attitude_.angular_velocity_B_rad_s();
   state_.yaw_rad = math::atan2(state_.R_OB(1, 0), state_.R_OB(0, 0));
+  return refused;
+}
 
+std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
+                              const std::array<actuation::JointState, robot::kJoints>& joints,
+                              const std::array<GaitPhase, robot::kLegs>& gait, bool lying_still) {
+  const std::size_t refused = observe_attitude(imu, lying_still, body_.carried());
+  state_.stamp = stamp;
+  state_.joints = joints;
+  if (!attitude_.initialised()) return refused;
   observe_feet();
   decide_contacts(gait);
   const Vector3 acceleration_O =
@@ -80,6 +88,28 @@ std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
   state_.p_OB_m = body_.p_OB_m();
   state_.v_OB_m_s = body_.v_OB_m_s();
   place_feet();
+  return refused;
+}
+
+std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
+                              std::span<const hal::GaitSample> gait, bool lying_still) {
+  std::size_t refused = observe_attitude(imu, lying_still, has_gait_);
+  state_.stamp = stamp;
+  for (const hal::GaitSample& sample : gait) {
+    const Vector3 v_B_m_s(sample.velocity_B_m_s[0], sample.velocity_B_m_s[1],
+                          sample.velocity_B_m_s[2]);
+    const bool finite = math::is_finite(v_B_m_s.squaredNorm()) && math::is_finite(sample.height_m);
+    if (!finite || (has_gait_ && sample.stamp <= gait_.stamp)) {
+      ++refused;
+      continue;
+    }
+    const double since_s = has_gait_ ? (sample.stamp - gait_.stamp).seconds() : 0.0;
+    gait_ = sample;
+    has_gait_ = true;
+    if (attitude_.initialised()) body_.carry(state_.R_OB * v_B_m_s, since_s);
+  }
+  state_.p_OB_m = body_.p_OB_m();
+  state_.v_OB_m_s = body_.v_OB_m_s();
   return refused;
 }
 

@@ -14,6 +14,7 @@
 #include "core/estimation/tracking.h"
 #include "core/geometry/frames.h"
 #include "core/robot/robot_model.h"
+#include "hal/api/gait_port.h"
 
 namespace surefoot::estimation {
 
@@ -50,6 +51,12 @@ class Estimator {
                      const std::array<actuation::JointState, robot::kJoints>& joints,
                      const std::array<GaitPhase, robot::kLegs>& gait, bool lying_still);
 
+  // The same for a body with gaits of its own: its leg odometry takes the place of joints and feet,
+  // which stay as they are. gait: samples of this tick, oldest first. Returns how many samples of
+  // either kind were refused.
+  std::size_t update(TimeNs stamp, std::span<const hal::ImuSample> imu,
+                     std::span<const hal::GaitSample> gait, bool lying_still);
+
   // A sample of the tracking camera and this estimator's own pose at its stamp, where it knows it
   // (kUnavailable: it does not); corrects what the next update() starts from. Status:
   // DriftEstimator::check(), nothing changed but the counters then.
@@ -79,9 +86,12 @@ class Estimator {
   const RobotState& state() const { return state_; }
   const DriftEstimator& drift() const { return drift_; }
   bool ready() const { return attitude_.initialised(); }
+  // The newest sample of a body with gaits of its own; null: none yet.
+  const hal::GaitSample* gait() const { return has_gait_ ? &gait_ : nullptr; }
   const Vector3& gyro_bias_B_rad_s() const { return attitude_.gyro_bias_B_rad_s(); }
 
  private:
+  std::size_t observe_attitude(std::span<const hal::ImuSample> imu, bool lying_still, bool carried);
   void observe_feet();
   void place_feet();
   void decide_contacts(const std::array<GaitPhase, robot::kLegs>& gait);
@@ -95,6 +105,8 @@ class Estimator {
   DriftEstimator drift_;
   Relocation relocation_;
   std::array<FootObservation, robot::kLegs> observations_;
+  bool has_gait_ = false;
+  hal::GaitSample gait_;
   RobotState state_;
 };
 

@@ -295,6 +295,25 @@ TEST(Mission, GoesFromWaypointToWaypointAndArrivesAtTheLast) {
   EXPECT_EQ(mission.phase(), MissionPhase::kArrived);
 }
 
+TEST(Mission, NavigatesByTheNavigatorsCommandUntilItSaysSo) {
+  MissionConfig config = cross();
+  config.kind = MissionConfig::Kind::kNavigate;
+  Mission mission;
+  mission.reset(config);
+  const estimation::RobotState state;
+  MissionFacts facts = healthy();
+  facts.navigation = {0.3, -0.1, 0.2};
+  ASSERT_GE(ticks_until(mission, MissionPhase::kWalk, state, facts, 1000), 0);
+  mission.update(state, facts, kStep_s);
+  EXPECT_EQ(mission.command().forward_m_s, 0.3);
+  EXPECT_EQ(mission.command().left_m_s, -0.1);
+  EXPECT_EQ(mission.command().yaw_rate_rad_s, 0.2);
+  facts.at_goal = true;
+  mission.update(state, facts, kStep_s);
+  EXPECT_EQ(mission.phase(), MissionPhase::kArrived);
+  EXPECT_EQ(mission.command().forward_m_s, 0.0);
+}
+
 TEST(Mission, GivesUpWhenItGetsNoNearer) {
   MissionConfig config = cross();
   config.live_lock_s = 2.0;

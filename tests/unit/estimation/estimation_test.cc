@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/base/random.h"
 #include "core/estimation/attitude.h"
@@ -293,6 +294,41 @@ TEST(BodyState, TellsWhatTheFeetPutRight) {
 }
 
 // The heading is declared, the tilt stays, and from there on the gyro turns it.
+TEST(Estimator, CarriesTheBodyByAnothersLegOdometry) {
+  EstimationConfig config;
+  config.attitude = attitude_config();
+  Estimator estimator;
+  estimator.reset(config, robot::RobotModel{}, 0.002);
+  int i = 1;
+  for (; !estimator.ready(); ++i) {
+    const hal::ImuSample imu = sample_at(i, Vector3::Zero(), Vector3(0, 0, 9.81));
+    EXPECT_EQ(
+        estimator.update(milliseconds(i), {&imu, 1}, std::span<const hal::GaitSample>{}, false),
+        0u);
+  }
+  EXPECT_EQ(estimator.gait(), nullptr);
+  estimator.set_yaw(0.5 * math::kPi);
+  estimator.place(Vector3(0, 0, 0.3));
+  hal::GaitSample gait;
+  gait.velocity_B_m_s = {0.5, 0.0, 0.0};
+  for (int k = 0; k <= 1000; ++k, ++i) {
+    gait.stamp = milliseconds(2 * k);
+    const hal::ImuSample imu = sample_at(i, Vector3::Zero(), Vector3(0, 0, 9.81));
+    EXPECT_EQ(estimator.update(milliseconds(i), {&imu, 1}, {&gait, 1}, false), 0u);
+  }
+  EXPECT_NEAR(estimator.state().p_OB_m[0], 0.0, 1e-6);
+  EXPECT_NEAR(estimator.state().p_OB_m[1], 1.0, 1e-6);
+  EXPECT_NEAR(estimator.state().v_OB_m_s[1], 0.5, 1e-9);
+  ASSERT_NE(estimator.gait(), nullptr);
+  // Not newer, and not finite: refused, nothing moves.
+  const Vector3 before = estimator.state().p_OB_m;
+  EXPECT_EQ(estimator.update(milliseconds(i), {}, {&gait, 1}, false), 1u);
+  gait.stamp = gait.stamp + milliseconds(2);
+  gait.velocity_B_m_s[1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(estimator.update(milliseconds(i), {}, {&gait, 1}, false), 1u);
+  EXPECT_EQ((estimator.state().p_OB_m - before).norm(), 0.0);
+}
+
 TEST(Estimator, SetYawTurnsTheHeadingAndKeepsTheTilt) {
   EstimationConfig config;
   config.attitude = attitude_config();
