@@ -16,6 +16,7 @@
 #include "apps/common/run.h"
 #include "apps/surefoot-lab/bench_mapping.h"
 #include "apps/surefoot-lab/bench_mpc.h"
+#include "apps/surefoot-lab/bench_navigation.h"
 #include "apps/surefoot-lab/bench_stereo.h"
 #include "apps/surefoot-lab/bench_terrain.h"
 #include "apps/surefoot-lab/eval_registration.h"
@@ -72,7 +73,7 @@ int bench_pictures() {
 
 int bench(const std::string& name, Stack& stack) {
   constexpr std::array kNames{"run", "pictures", "mapping", "registration",
-                              "mpc", "stereo",   "terrain"};
+                              "mpc", "stereo",   "terrain", "navigation"};
   if (!name.empty() && std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
     std::fputs(fmt::format("bench: '{}' is unknown; there are: {}\n", name, fmt::join(kNames, " "))
                    .c_str(),
@@ -86,6 +87,7 @@ int bench(const std::string& name, Stack& stack) {
   if (name.empty() || name == "mpc") worst = std::max(worst, bench_mpc());
   if (name.empty() || name == "stereo") worst = std::max(worst, bench_stereo());
   if (name.empty() || name == "terrain") worst = std::max(worst, bench_terrain());
+  if (name.empty() || name == "navigation") worst = std::max(worst, bench_navigation());
   if (name.empty() || name == "run") worst = std::max(worst, bench_run(stack));
   return worst;
 }

@@ -1,0 +1,159 @@
+// Whole runs in a flat world: does the robot arrive, touch nothing, and give up only when it must?
+#include <gtest/gtest.h>
+
+#include "tests/support/samples.h"
+#include "tests/unit/navigation/parts.h"
+#include "tests/unit/navigation/world.h"
+
+namespace surefoot::navigation {
+namespace {
+
+using test::RunOptions;
+using test::RunResult;
+using test::Simulation;
+using test::World;
+
+RunOptions options(const Vector2& goal, std::uint64_t seed = 1) {
+  RunOptions made;
+  made.config = test::small_robot();
+  made.goal = goal;
+  made.seed = seed;
+  return made;
+}
+
+RunResult run(const World& world, const RunOptions& options) {
+  return Simulation(world, options).run();
+}
+
+World forest(std::uint64_t seed, double length_m, double per_m2) {
+  Random random(seed, 11);
+  World world;
+  const int posts = static_cast<int>(length_m * 30 * per_m2);
+  for (int i = 0; i < posts; ++i) {
+    test::Circle post;
+    post.p[0] = random.uniform(1.5, length_m - 1.5);
+    post.p[1] = random.uniform(-15, 15);
+    post.r = random.uniform(0.06, 0.3);
+    world.circles.push_back(post);
+  }
+  return world;
+}
+
+TEST(Runs, CrossesForests) {
+  for (int seed = 0; seed < tests::samples(20, 2); ++seed) {
+    const auto number = static_cast<std::uint64_t>(seed);
+    const RunResult result = run(forest(number, 40, 0.15), options(Vector2(40, 0), number));
+    EXPECT_EQ(result.state, NavigationState::kArrived) << seed << to_string(result.reason);
+    EXPECT_GT(result.least_gap_m, 0.0) << seed;
+    EXPECT_LT(result.length_m, 60) << seed;
+    EXPECT_LE(result.largest_step_m_s, 0.05);
+    EXPECT_LE(result.largest_yaw_step_rad_s, 0.05);
+  }
+}
+
+TEST(Runs, GoesRoundWideWalls) {
+  for (const double width_m : {25.0, 40.0, 60.0}) {
+    World world;
+    world.walls.push_back({Vector2(10, -width_m / 2), Vector2(10, width_m / 2)});
+    RunOptions o = options(Vector2(25, 0));
+    o.limit_s = 500;
+    const RunResult result = run(world, o);
+    EXPECT_EQ(result.state, NavigationState::kArrived) << width_m << to_string(result.reason);
+    EXPECT_GT(result.least_gap_m, 0.0);
+    EXPECT_LT(result.length_m, width_m + 40) << width_m;
+  }
+}
+
+TEST(Runs, LeavesCulDeSacs) {
+  for (const double width_m : {4.0, 10.0}) {
+    for (const double depth_m : {5.0, 15.0}) {
+      World world;
+      const double half_m = width_m / 2;
+      world.walls.push_back({Vector2(5, half_m), Vector2(5 + depth_m, half_m)});
+      world.walls.push_back({Vector2(5, -half_m), Vector2(5 + depth_m, -half_m)});
+      world.walls.push_back({Vector2(5 + depth_m, -half_m), Vector2(5 + depth_m, half_m)});
+      RunOptions o = options(Vector2(30, 0));
+      o.start.p_O_m = Vector2(5 + depth_m - 2, 0);
+      const RunResult result = run(world, o);
+      EXPECT_EQ(result.state, NavigationState::kArrived)
+          << width_m << " " << depth_m << to_string(result.reason);
+      EXPECT_GT(result.least_gap_m, 0.0);
+    }
+  }
+}
+
+TEST(Runs, SaysThatThereIsNoPathWhenEnclosed) {
+  for (const double radius_m : {3.0, 8.0}) {
+    for (const bool goal_inside : {false, true}) {
+      World world;
+      const Vector2 middle(goal_inside ? 12.0 : 0.0, 0);
+      for (int i = 0; i < 24; ++i) {
+        const double a = M_PI / 12 * i;
+        const double b = M_PI / 12 * (i + 1);
+        world.walls.push_back({middle + Vector2(std::cos(a), std::sin(a)) * radius_m,
+                               middle + Vector2(std::cos(b), std::sin(b)) * radius_m});
+      }
+      RunOptions o = options(Vector2(goal_inside ? 12.0 : 30.0, 0));
+      const RunResult result = run(world, o);
+      EXPECT_EQ(result.state, NavigationState::kNoPath) << radius_m << to_string(result.reason);
+      if (!goal_inside) {
+        EXPECT_LT(result.time_s, 60);
+      }
+      EXPECT_GT(result.least_gap_m, 0.0);
+    }
+  }
+}
+
+TEST(Runs, WalkersCross) {
+  int unseen = 0;
+  for (int seed = 0; seed < tests::samples(40, 3); ++seed) {
+    Random random(static_cast<std::uint64_t>(seed), 5);
+    World world;
+    for (int i = 0; i < 4; ++i) {
+      test::Walker walker;
+      const double speed = random.uniform(0.5, 1.5);
+      const double side = random.below(2) == 0 ? 1 : -1;
+      const double x = random.uniform(2.0, 8.0);
+      const double meet_s = (x + random.uniform(-0.5, 0.5)) / 0.45;
+      walker.v = Vector2(0, -side * speed);
+      walker.p = Vector2(x, side * speed * meet_s);
+      world.walkers.push_back(walker);
+    }
+    const RunResult result = run(world, options(Vector2(12, 0), static_cast<std::uint64_t>(seed)));
+    EXPECT_EQ(result.state, NavigationState::kArrived) << seed << to_string(result.reason);
+    if (result.least_unseen_gap_m <= 0) ++unseen;
+    EXPECT_GT(result.least_walker_gap_m, 0) << seed;
+  }
+  EXPECT_LE(unseen, 4);  // ran into from where the robot does not look
+}
+
+int side_changes(const RunResult& result, const Vector2& middle) {
+  int changes = 0;
+  int side = 0;
+  for (const auto& plan : result.plans) {
+    for (std::size_t i = 1; i < plan.size(); ++i) {
+      if ((plan[i - 1][0] - middle[0]) * (plan[i][0] - middle[0]) > 0) continue;
+      const int now = plan[i][1] > middle[1] ? 1 : -1;
+      if (side != 0 && now != side) ++changes;
+      side = now;
+      break;
+    }
+  }
+  return changes;
+}
+
+TEST(Runs, KeepsToOneSideOfASymmetricObstacle) {
+  int worst = 0;
+  for (int seed = 0; seed < tests::samples(100, 3); ++seed) {
+    World world;
+    world.walls.push_back({Vector2(6, -3), Vector2(6, 3)});
+    const RunResult result = run(world, options(Vector2(12, 0), static_cast<std::uint64_t>(seed)));
+    EXPECT_EQ(result.state, NavigationState::kArrived) << seed << to_string(result.reason);
+    EXPECT_GT(result.least_gap_m, 0.0) << seed;
+    worst = std::max(worst, side_changes(result, Vector2(6, 0)));
+  }
+  EXPECT_LE(worst, 1);
+}
+
+}  // namespace
+}  // namespace surefoot::navigation
