@@ -8,15 +8,24 @@ export LC_ALL=C.UTF-8  # columns, not bytes
 readonly MAX_LINES=500
 readonly MAX_COLUMNS=100
 
+# One pass over all files; columns are counted in characters.
 violations() {
-  local file lines
-  while IFS= read -r file; do
-    lines=$(wc -l <"$file")
-    [ "$lines" -le "$MAX_LINES" ] || echo "$file: $lines lines"
-    grep -nE "^.{$((MAX_COLUMNS + 1)),}" "$file" | sed "s|^\([0-9]*\):.*|$file:\1: over $MAX_COLUMNS columns|" || true
-    grep -nP '\t' "$file" | sed "s|^\([0-9]*\):.*|$file:\1: tab|" || true
-    grep -nE '[[:blank:]]$' "$file" | sed "s|^\([0-9]*\):.*|$file:\1: blank at the end|" || true
-  done < <(find core hal sim_hal apps tests \( -name '*.h' -o -name '*.cc' \) | sort)
+  local -a files
+  mapfile -t files < <(find core hal sim_hal apps tests \( -name '*.h' -o -name '*.cc' \) | sort)
+  perl -CSD -Mutf8 -e '
+    my ($lines, $columns) = splice(@ARGV, 0, 2);
+    for my $file (@ARGV) {
+      open(my $text, "<", $file) or die "$file: $!\n";
+      my @lines = <$text>;
+      print "$file: ", scalar(@lines), " lines\n" if @lines > $lines;
+      for my $i (0 .. $#lines) {
+        chomp(my $line = $lines[$i]);
+        my $at = "$file:" . ($i + 1);
+        print "$at: over $columns columns\n" if length($line) > $columns;
+        print "$at: tab\n" if $line =~ /\t/;
+        print "$at: blank at the end\n" if $line =~ /[ \t]$/;
+      }
+    }' "$MAX_LINES" "$MAX_COLUMNS" "${files[@]}"
 }
 
 self_test() {
@@ -32,7 +41,7 @@ self_test() {
   printf '%s\n' "$(printf 'ü%.0s' {1..100})" >hal/wide_enough.cc
   found=$(violations)
   diff <(printf '%s\n' 'core/long.h: 501 lines' 'hal/wide.cc:2: over 100 columns' \
-    'hal/wide.cc:4: tab' 'hal/wide.cc:3: blank at the end') <(echo "$found") && echo "caught all four"
+    'hal/wide.cc:3: blank at the end' 'hal/wide.cc:4: tab') <(echo "$found") && echo "caught all four"
 }
 
 if [ "$1" = --self-test ]; then

@@ -44,7 +44,7 @@ hal::LidarScan scan_of_post(TimeNs stamp, double x_m, double post_x_m, double po
 
 class ObjectTaskTest : public ::testing::Test {
  protected:
-  void SetUp() override { task_->reset(objects::config(), scanner()); }
+  void SetUp() override { task_->reset(objects::test::config(), scanner()); }
 
   // The trunk walks along x at 1 m/s, 0.3 m over level ground.
   void walk_until(int ms) {

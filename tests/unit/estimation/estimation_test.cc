@@ -307,7 +307,7 @@ TEST(Estimator, CarriesTheBodyByAnothersLegOdometry) {
         0u);
   }
   EXPECT_EQ(estimator.gait(), nullptr);
-  estimator.set_yaw(0.5 * math::kPi);
+  estimator.set_yaw(1.5707963267948966);
   estimator.place(Vector3(0, 0, 0.3));
   hal::GaitSample gait;
   gait.velocity_B_m_s = {0.5, 0.0, 0.0};
