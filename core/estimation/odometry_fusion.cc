@@ -218,8 +218,8 @@ bool OdometryFusion::make_innovation(const VisualMotion& motion, Innovation& out
   out.jacobian.block<3, 1>(3, kNow + 3) = R_KO.col(2);
   out.jacobian.block<6, 6>(0, kCommon) = common;
 
-  // A wrong "up" turns the way as it turned both odometers'; what has changed since is a turn of its
-  // own, at either picture.
+  // A wrong "up" turns the way as it turned both odometers'; what has changed since is a turn of
+  // its own, at either picture.
   const Vector3 way = now_.p_m - key_.p_m;
   Eigen::Matrix<double, 6, 4> change = Eigen::Matrix<double, 6, 4>::Zero();
   for (int axis = 0; axis < 2; ++axis) {

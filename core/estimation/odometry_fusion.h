@@ -4,7 +4,8 @@
 // the camera drifts by the keyframe, hardly at low speed, more when pictures are blurred and few
 // points are left. Either may be missing.
 //
-// An error-state Kalman filter. Frames: O gravity-aligned, B trunk, N camera now, K at its keyframe.
+// An error-state Kalman filter. Frames: O gravity-aligned, B trunk, N camera, K the same at
+// its keyframe.
 //
 //   p        B in O [m]
 //   yaw      turn about up from the attitude that is given to the fused one [rad]
@@ -15,14 +16,14 @@
 //   tilt     error of "up" about O's x and y [rad], which bends both odometers' ways alike; nothing
 //            here shows it, it is carried so that the height's covariance is right
 //
-// R = exp(tilt) Rz(yaw) R_OB. The error of a pose is that of the group, p_true = Rz(e) p + d: a turn
-// of everything then changes no predicted motion whatever the estimates are, so that no motion
-// seems to tell where north is (with d = p_true - p yaw's variance came out several times too small).
+// R = exp(tilt) Rz(yaw) R_OB. The error of a pose is that of the group, p_true = Rz(e) p + d: a
+// turn of everything then changes no predicted motion whatever the estimates are, so that no motion
+// seems to tell where north is (with d = p_true - p yaw's variance was several times too small).
 //
 // A motion from K to N is compared with the two clones, six scalars at once, when it arrives
 // (stochastic cloning, Roumeliotis and Burdick, ICRA 2002): its age does not matter. Its error is
-// sqrt(share) L common + noise of covariance (1 - share) C, C = L L': what the keyframe's disparities
-// are off by is the same in every motion from it and must not be averaged away.
+// sqrt(share) L common + noise of covariance (1 - share) C, C = L L': what the keyframe's
+// disparities are off by is the same in every motion from it and must not be averaged away.
 //
 // How the Estimator will call it:
 //   update()          each tick, with its R_OB and what its feet say of the velocity
