@@ -1,7 +1,5 @@
 #include "core/visual_odometry/alignment.h"
 
-#include <Eigen/Cholesky>
-
 #include "core/math/elementary.h"
 
 namespace surefoot::visual_odometry {
@@ -175,7 +173,7 @@ bool make_jacobian(const Template& patch, double grey_noise, DisparityJacobian& 
   const double prior = (1.0 + math::square(grey_noise)) / math::square(kExpectedSlope);
   information(1, 1) += prior;
   information(2, 2) += prior;
-  out.inverse = Eigen::LDLT<Matrix3>(information).solve(Matrix3::Identity());
+  out.inverse = information.inverse();
   return out.inverse(0, 0) > 0;
 }
 

@@ -1,7 +1,5 @@
 #include "core/visual_odometry/clique.h"
 
-#include <bit>
-
 #include "core/math/elementary.h"
 
 namespace surefoot::visual_odometry {
@@ -28,6 +26,15 @@ void insert(std::array<std::uint64_t, (kMaxFeatures + 63) / 64>& set, std::size_
   set[i / 64] |= std::uint64_t{1} << (i % 64);
 }
 
+// Not std::popcount: where the CPU has no such instruction it is a call into the compiler's
+// library.
+int count_bits(std::uint64_t x) {
+  x -= x >> 1u & 0x5555555555555555u;
+  x = (x & 0x3333333333333333u) + (x >> 2u & 0x3333333333333333u);
+  x = (x + (x >> 4u)) & 0x0F0F0F0F0F0F0F0Fu;
+  return static_cast<int>(x * 0x0101010101010101u >> 56u);
+}
+
 }  // namespace
 
 // count if there is no candidate.
@@ -38,7 +45,7 @@ std::size_t CliqueFinder::best_of(const Set& candidates, std::size_t count) cons
     if ((candidates[i / 64] >> (i % 64) & 1u) == 0) continue;
     int common = 0;
     for (std::size_t word = 0; word < kWords; ++word) {
-      common += std::popcount(candidates[word] & agrees_[i][word]);
+      common += count_bits(candidates[word] & agrees_[i][word]);
     }
     if (common <= most) continue;
     most = common;

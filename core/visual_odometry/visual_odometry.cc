@@ -17,8 +17,8 @@ constexpr double kMaxWarp = 2.5;
 constexpr std::uint16_t kNobody = 0xFFFF;
 
 KeyframeView predicted_view(const KeyframeView& last, const Prediction& prediction) {
-  const Matrix3 R_NL = prediction.R_LN.transpose();
-  return {R_NL * last.R_NK, R_NL * (last.t_NK_m - prediction.p_LN_m)};
+  const Matrix3 R_NP = prediction.R_PN.transpose();
+  return {R_NP * last.R_NK, R_NP * (last.t_NK_m - prediction.p_PN_m)};
 }
 
 // How pixels around a feature move with the view; false where they do not face it any more.
@@ -87,8 +87,8 @@ Status VisualOdometry::update(const Pictures& pictures, const Prediction& predic
                          ? fits(*pictures.disparities)
                          : pictures.right.pixels != nullptr && fits(pictures.right);
   if (!depth || (started_ && !(pictures.stamp > last_stamp_))) return Status::kInvalid;
-  if (!geometry::is_rotation(prediction.R_LN, 1e-6)) return Status::kInvalid;
-  if (!math::is_finite(prediction.p_LN_m.squaredNorm())) return Status::kInvalid;
+  if (!geometry::is_rotation(prediction.R_PN, 1e-6)) return Status::kInvalid;
+  if (!math::is_finite(prediction.p_PN_m.squaredNorm())) return Status::kInvalid;
   started_ = true;
   last_stamp_ = pictures.stamp;
 
@@ -259,7 +259,8 @@ bool VisualOdometry::accept(const Solution& solution, const KeyframeView& predic
   // Larger than the noise said: then so is the uncertainty.
   const double freedom = 2.0 * inliers - 6.0;
   const double stretch = solution.chi2 > freedom ? solution.chi2 / freedom : 1.0;
-  const Matrix6 covariance_N = stretch * factors.solve(Matrix6::Identity());
+  Matrix6 covariance_N;
+  for (int i = 0; i < 6; ++i) covariance_N.col(i) = stretch * factors.solve(Vector6::Unit(i));
   Matrix6 turn = Matrix6::Zero();
   turn.topLeftCorner<3, 3>() = solution.view.R_NK.transpose();
   turn.bottomRightCorner<3, 3>() = solution.view.R_NK.transpose();

@@ -2,7 +2,7 @@
 // IROS 2008): corners, matches by similarity, the largest set that keeps its distances, least
 // squares. README.md has the equations.
 //
-// Frames: N is the rectified left camera now, K the same at the keyframe, L at the last picture.
+// Frames: N is the rectified left camera now, K the same at the keyframe, P at the last picture.
 #pragma once
 
 #include <array>
@@ -31,8 +31,8 @@ struct Pictures {
 // How the camera moved since the last picture, by others: the turn from the gyro, the displacement
 // from the legs or none.
 struct Prediction {
-  Matrix3 R_LN = Matrix3::Identity();
-  Vector3 p_LN_m = Vector3::Zero();
+  Matrix3 R_PN = Matrix3::Identity();
+  Vector3 p_PN_m = Vector3::Zero();
 };
 
 enum class MotionStatus : std::uint8_t {

@@ -168,10 +168,10 @@ TEST(RealVisualOdometry, DriftAlongARecordedSequence) {
     for (int axis = 0; axis < 3; ++axis) noise[axis] = kGyroNoise_rad * random.normal();
     visual_odometry::Prediction prediction;
     const geometry::Quaternion turned = geometry::to_quaternion(between(last, truth).R);
-    prediction.R_LN = geometry::to_matrix(geometry::normalised(turned)) *
+    prediction.R_PN = geometry::to_matrix(geometry::normalised(turned)) *
                       geometry::to_matrix(geometry::from_rotation_vector(noise));
     // Legs that are 10 % off.
-    prediction.p_LN_m = 1.1 * between(last, truth).p_m;
+    prediction.p_PN_m = 1.1 * between(last, truth).p_m;
     visual_odometry::Motion motion;
     const visual_odometry::Pictures input{TimeNs{static_cast<std::int64_t>(i + 1) * 200'000'000},
                                           {grey.data, 320, 240},
@@ -180,7 +180,7 @@ TEST(RealVisualOdometry, DriftAlongARecordedSequence) {
     ASSERT_EQ(odometry->update(input, prediction, motion), Status::kOk);
     const double step_m = (truth.p_m - last.p_m).norm();
     way_m += step_m;
-    const Pose predicted = chain(believed, {prediction.R_LN, prediction.p_LN_m});
+    const Pose predicted = chain(believed, {prediction.R_PN, prediction.p_PN_m});
     if (motion.status == visual_odometry::MotionStatus::kOk) {
       ++good;
       believed = chain(key, {motion.R_KN, motion.p_KN_m});

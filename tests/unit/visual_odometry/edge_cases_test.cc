@@ -116,17 +116,17 @@ TEST_F(EdgeCases, AHugeMotionIsNotInvented) {
 TEST_F(EdgeCases, AQuickTurnThatTheGyroKnowsIsFollowed) {
   EXPECT_EQ(see(scene_.render(pair_, at(0), {})).status, MotionStatus::kFirst);
   Prediction prediction;
-  prediction.R_LN = at(0).R_WN.transpose() * at(0, 0.3).R_WN;
+  prediction.R_PN = at(0).R_WN.transpose() * at(0, 0.3).R_WN;
   const Motion motion = see(scene_.render(pair_, at(0.01, 0.3), {}), prediction);
   ASSERT_EQ(motion.status, MotionStatus::kOk);
-  const Vector3 off = geometry::to_rotation_vector(motion.R_KN * prediction.R_LN.transpose());
+  const Vector3 off = geometry::to_rotation_vector(motion.R_KN * prediction.R_PN.transpose());
   EXPECT_LT(off.norm(), 0.002);
 }
 
 TEST_F(EdgeCases, ATurnThatTheGyroDeniesIsInconsistent) {
   EXPECT_EQ(see(scene_.render(pair_, at(0), {})).status, MotionStatus::kFirst);
   Prediction prediction;
-  prediction.R_LN = geometry::rotation_z(0.045);
+  prediction.R_PN = geometry::rotation_z(0.045);
   EXPECT_EQ(see(scene_.render(pair_, at(0), {}), prediction).status, MotionStatus::kInconsistent);
 }
 
@@ -148,12 +148,12 @@ TEST_F(EdgeCases, RefusesWhatIsNoInput) {
   input.right.pixels = nullptr;
   EXPECT_TRUE(refused(input, {}));
   Prediction prediction;
-  prediction.R_LN *= 1.01;
+  prediction.R_PN *= 1.01;
   EXPECT_TRUE(refused(good, prediction));
-  prediction.R_LN = Matrix3::Constant(std::numeric_limits<double>::quiet_NaN());
+  prediction.R_PN = Matrix3::Constant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(refused(good, prediction));
   prediction = {};
-  prediction.p_LN_m.x() = std::numeric_limits<double>::infinity();
+  prediction.p_PN_m.x() = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(refused(good, prediction));
   EXPECT_FALSE(refused(good, {})) << "nothing has changed";
 }

@@ -141,7 +141,7 @@ void compare(std::uint64_t seed, double contrast, double grey_noise, Errors& err
     const visual_odometry::Pictures input{TimeNs{(i + 1) * 80'000'000}, pictures[i].left_view(),
                                           pictures[i].right_view(), nullptr};
     visual_odometry::Prediction prediction;
-    if (i == 1) prediction.R_LN = relative(places[0], places[1]).R_WN;
+    if (i == 1) prediction.R_PN = relative(places[0], places[1]).R_WN;
     ASSERT_EQ(odometry->update(input, prediction, motion), Status::kOk);
   }
   CameraPlace theirs;

@@ -89,11 +89,11 @@ WalkResult walk(const WalkOptions& options) {
     visual_odometry::Prediction prediction;
     Vector3 noise;
     for (int axis = 0; axis < 3; ++axis) noise[axis] = options.gyro_noise_rad * random.normal();
-    prediction.R_LN =
+    prediction.R_PN =
         relative(last, camera).R_WN * geometry::to_matrix(geometry::from_rotation_vector(noise));
     if (options.with_legs) {
-      prediction.p_LN_m = 1.1 * relative(last, camera).p_WN_m;
-      for (int axis = 0; axis < 3; ++axis) prediction.p_LN_m[axis] += 0.005 * random.normal();
+      prediction.p_PN_m = 1.1 * relative(last, camera).p_WN_m;
+      for (int axis = 0; axis < 3; ++axis) prediction.p_PN_m[axis] += 0.005 * random.normal();
     }
     visual_odometry::Pictures input{TimeNs{static_cast<std::int64_t>(1e9 * (time_s + 1))},
                                     pictures.left_view(), pictures.right_view(), nullptr};
