@@ -23,7 +23,8 @@ namespace {
 
 constexpr std::array kTables{kControlCases,   kModuleCases,  kMpcCases,          kDynamicsCases,
                              kJumpCases,      kMappingCases, kRegistrationCases, kObstacleCases,
-                             kExecutiveCases, kStereoCases,  kPlanningCases,     kGroundCases};
+                             kExecutiveCases, kStereoCases,  kPlanningCases,     kGroundCases,
+                             kNavigationCases};
 
 int list() {
   for (const WorkEntry* table : kTables) {

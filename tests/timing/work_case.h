@@ -42,5 +42,6 @@ extern const WorkEntry kObstacleCases[];
 extern const WorkEntry kStereoCases[];
 extern const WorkEntry kPlanningCases[];
 extern const WorkEntry kGroundCases[];
+extern const WorkEntry kNavigationCases[];
 
 }  // namespace surefoot::timing

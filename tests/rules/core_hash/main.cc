@@ -34,6 +34,7 @@ constexpr Workload kWorkloads[] = {
     {"jump", surefoot::tests::hash_jump},
     {"ledge", surefoot::tests::hash_ledge},
     {"obstacles", surefoot::tests::hash_obstacles},
+    {"navigation", surefoot::tests::hash_navigation},
 };
 
 }  // namespace

@@ -44,5 +44,6 @@ void hash_static_walk(Fnv64& hash);
 void hash_jump(Fnv64& hash);
 void hash_ledge(Fnv64& hash);
 void hash_obstacles(Fnv64& hash);
+void hash_navigation(Fnv64& hash);
 
 }  // namespace surefoot::tests
