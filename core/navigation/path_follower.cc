@@ -8,11 +8,13 @@ namespace {
 constexpr double kMaxTick_s = 0.05;
 constexpr double kCreep_m_s = 0.05;   // the last centimetres to the goal
 constexpr double kStopGap_m = 0.08;   // left before what blocks
-constexpr double kDiscStep_m = 0.08;  // between discs of the corridor
+constexpr double kDiscStep_m = 0.16;  // between discs of the corridor
 
 double turned_towards(double target, double from, double step) {
   return from + math::clamp(target - from, -step, step);
 }
+
+constexpr std::uint8_t smaller_of(std::uint8_t a, std::uint8_t b) { return a < b ? a : b; }
 
 // Up with one acceleration, down with another.
 double speed_towards(double target, double from, double up, double down) {
@@ -89,21 +91,23 @@ double PathFollower::curve_limit_m_s() const {
   return math::sqrt(limit2);
 }
 
+// Numbers rise from disc to disc: what is drawn stays.
 void PathFollower::draw_disc(const Vector2& p_O_m, std::uint8_t number) {
-  const double radius_m = config_.half_width_m + 0.5 * config_.map.clearance_m;
+  // Without gaps between discs, and half a cell's diagonal more, so that no point is missed.
+  const double radius_m =
+      math::sqrt(math::square(corridor_radius_m()) + math::square(0.5 * kDiscStep_m));
+  const double reach = radius_m / kGridCell_m + 0.71;
   const Vector2 at = (p_O_m - corridor_corner_O_m_) / kGridCell_m;
-  const double reach = radius_m / kGridCell_m;
   const auto bound = [](std::int32_t i) { return math::clamp(i, 0, kGridSide - 1); };
-  const std::int32_t x0 = bound(floor_of(at[0] - reach));
-  const std::int32_t x1 = bound(floor_of(at[0] + reach));
-  const std::int32_t y0 = bound(floor_of(at[1] - reach));
   const std::int32_t y1 = bound(floor_of(at[1] + reach));
-  for (std::int32_t y = y0; y <= y1; ++y) {
-    const double dy2 = math::square(y + 0.5 - at[1]);
-    for (std::int32_t x = x0; x <= x1; ++x) {
-      if (math::square(x + 0.5 - at[0]) + dy2 > reach * reach) continue;
-      std::uint8_t& cell = corridor_[static_cast<std::size_t>(y * kGridSide + x)];
-      if (number < cell) cell = number;
+  for (std::int32_t y = bound(floor_of(at[1] - reach)); y <= y1; ++y) {
+    const double width2 = reach * reach - math::square(y + 0.5 - at[1]);
+    if (width2 <= 0) continue;
+    const double width = math::sqrt(width2) - 0.5;
+    std::uint8_t* row = corridor_.data() + y * kGridSide;
+    const std::int32_t x1 = bound(floor_of(at[0] + width));
+    for (std::int32_t x = bound(floor_of(at[0] - width)); x <= x1; ++x) {
+      row[x] = smaller_of(row[x], number);
     }
   }
 }
@@ -111,51 +115,74 @@ void PathFollower::draw_disc(const Vector2& p_O_m, std::uint8_t number) {
 // The robot comes back to the path within about a metre.
 void PathFollower::draw_corridor(const RobotPose& robot) {
   const FollowConfig& follow = config_.follow;
+  const Path& path = *path_;
   corridor_.fill(kClear);
   const double side_m = kGridSide * kGridCell_m;
   corridor_corner_O_m_ = robot.p_O_m - Vector2(0.5, 0.5) * side_m;
   const double wanted_m = math::square(follow.cruise_m_s) / (2.0 * follow.braking_m_s2) +
                           follow.cruise_m_s * follow.reaction_s + config_.half_length_m + 0.3;
   const double radius_m = config_.half_width_m + config_.map.clearance_m;
-  corridor_end_m_ = smaller(wanted_m, 0.5 * side_m - radius_m);
+  const double end_m = smaller(wanted_m, 0.5 * side_m - radius_m);
   const Vector2 off_m = robot.p_O_m - place_.p_O_m;
-  std::uint8_t number = 0;
-  std::size_t sample = place_.sample;
-  for (double way_m = 0; way_m <= corridor_end_m_ && number + 1 < kClear; way_m += kDiscStep_m) {
-    while (sample + 1 < path_->size() && (*path_)[sample].along_m < place_.at_m + way_m) ++sample;
-    if (sample + 1 == path_->size() && way_m > to_end_m_ + kDiscStep_m) break;
-    const Vector2 on_path = way_m == 0 ? place_.p_O_m : (*path_)[sample].p_O_m;
-    corridor_m_[number] = way_m;
-    draw_disc(on_path + off_m * larger(0.0, 1.0 - way_m), number++);
+  discs_ = 0;
+  std::size_t i = place_.sample;
+  for (double way_m = 0; way_m <= end_m && discs_ < kClear; way_m += kDiscStep_m) {
+    if (way_m > to_end_m_ + kDiscStep_m) break;
+    const double along_m = smaller(place_.at_m + way_m, path.back().along_m);
+    while (i + 2 < path.size() && path[i + 1].along_m < along_m) ++i;
+    const double spacing_m = larger(1e-9, path[i + 1].along_m - path[i].along_m);
+    const double share = math::clamp((along_m - path[i].along_m) / spacing_m, 0.0, 1.0);
+    Disc& disc = corridor_O_m_[discs_];
+    disc.way_m = way_m;
+    disc.p_O_m = path[i].p_O_m + (path[i + 1].p_O_m - path[i].p_O_m) * share +
+                 off_m * larger(0.0, 1.0 - way_m);
+    disc.to_O = path[i].tangent_O;
+    draw_disc(disc.p_O_m, static_cast<std::uint8_t>(discs_));
+    ++discs_;
   }
+  for (std::size_t k = 0; k + 1 < discs_; ++k) {
+    const Vector2 step_m = corridor_O_m_[k + 1].p_O_m - corridor_O_m_[k].p_O_m;
+    const double length_m = math::sqrt(step_m.squaredNorm());
+    if (length_m > 1e-3) corridor_O_m_[k].to_O = step_m / length_m;
+  }
+}
+
+// Straight on from the first disc that comes near the point; far: it passes beside it.
+double PathFollower::way_to_touch_m(const Vector2& p_O_m, std::uint8_t number) const {
+  const Disc& disc = corridor_O_m_[number];
+  const Vector2 to_m = p_O_m - disc.p_O_m;
+  const double aside_m = cross(disc.to_O, to_m);
+  const double ahead_m = to_m.dot(disc.to_O);
+  const double room2 = math::square(corridor_radius_m()) - aside_m * aside_m;
+  const bool passed = ahead_m < 0 && ahead_m * ahead_m >= room2;
+  if (room2 <= 0 || passed) return 2.0 * config_.way.sight_range_m;
+  return larger(0.0, disc.way_m + ahead_m - math::sqrt(room2));
 }
 
 void PathFollower::measure_free_way(const RobotPose& robot, const objects::Objects& objects) {
   draw_corridor(robot);
-  const double radius2 = math::square(config_.half_width_m + 0.5 * config_.map.clearance_m);
+  const Vector2 off_m = robot.p_O_m - place_.p_O_m;
+  near_.gather(objects, robot.p_O_m,
+               corridor_O_m_[discs_ - 1].way_m + math::sqrt(off_m.squaredNorm()) + 1.0);
+  const double beside2 = 1.5 * math::square(corridor_radius_m());
   const Vector2 to_O = (*path_)[sample_at(place_.at_m + 0.3)].p_O_m - robot.p_O_m;
-  std::uint8_t first = kClear;
-  for (const objects::Object& object : objects) {
-    if (object.kind == objects::ObjectClass::kGround || object.moving) continue;
-    for (const Vector2& p_O_m : object.points_O_m) {
-      const Vector2 at = p_O_m - corridor_corner_O_m_;
-      constexpr double kSide_m = kGridSide * kGridCell_m;
-      if (!(at[0] >= 0 && at[1] >= 0 && at[0] < kSide_m && at[1] < kSide_m)) continue;
-      const auto x = static_cast<std::int32_t>(at[0] / kGridCell_m);
-      const auto y = static_cast<std::int32_t>(at[1] / kGridCell_m);
+  const double front_m = larger(0.0, config_.half_length_m - config_.half_width_m) + kStopGap_m;
+  double touch_m = config_.way.sight_range_m + front_m;
+  for (const objects::Object* object : near_.standing()) {
+    for (const Vector2& p_O_m : object->points_O_m) {
+      const double x = (p_O_m[0] - corridor_corner_O_m_[0]) * (1.0 / kGridCell_m);
+      const double y = (p_O_m[1] - corridor_corner_O_m_[1]) * (1.0 / kGridCell_m);
+      if (!(x >= 0 && y >= 0 && x < kGridSide && y < kGridSide)) continue;
       const std::uint8_t number = corridor_[static_cast<std::size_t>(
-          math::clamp(y, 0, kGridSide - 1) * kGridSide + math::clamp(x, 0, kGridSide - 1))];
-      if (number >= first) continue;
+          static_cast<std::int32_t>(y) * kGridSide + static_cast<std::int32_t>(x))];
+      if (number == kClear || corridor_O_m_[number].way_m - kDiscStep_m > touch_m) continue;
       // Too near already: no obstacle for a way that leads off.
       const Vector2 from_robot = p_O_m - robot.p_O_m;
-      if (from_robot.squaredNorm() < radius2 * 1.5 && from_robot.dot(to_O) <= 0) continue;
-      first = number;
+      if (from_robot.squaredNorm() < beside2 && from_robot.dot(to_O) <= 0) continue;
+      touch_m = smaller(touch_m, way_to_touch_m(p_O_m, number));
     }
   }
-  free_m_ = config_.way.sight_range_m;
-  if (first == kClear) return;
-  const double front_m = larger(0.0, config_.half_length_m - config_.half_width_m);
-  free_m_ = larger(0.0, corridor_m_[first] - front_m - kStopGap_m);
+  free_m_ = larger(0.0, touch_m - front_m);
 }
 
 double PathFollower::speed_limit_m_s() {
@@ -245,14 +272,16 @@ VelocityCommand PathFollower::follow(const RobotPose& robot, const objects::Obje
     locate(robot);
     measure_free_way(robot, objects);
     intent.path = path_;
+    intent.sample = place_.sample;
     intent.at_m = place_.at_m;
     intent.off_path_O_m = robot.p_O_m - place_.p_O_m;
     intent.speed_m_s = speed_limit_m_s();
   } else {
     reason_ = SpeedReason::kNoPath;
     free_m_ = 0;
+    near_.gather(objects, robot.p_O_m, WalkerAvoidance::kLooksAround_m);
   }
-  const Evasion evasion = walkers_.decide(intent, objects, stamp);
+  const Evasion evasion = walkers_.decide(intent, near_, stamp);
   if (evasion.aside) {
     const math::SinCos yaw = math::sin_cos(robot.yaw_rad);
     const Vector2 heading(yaw.cos, yaw.sin);

@@ -11,15 +11,19 @@
 // (walker_avoidance.h). Commands change by no more than the configured accelerations, also when
 // the path is replaced.
 //
-// Free ground ahead: the path's next metres are drawn into a small grid as a corridor, then each
-// object point is looked up once. Frames: O; the command is in the robot's heading.
-// Bounds: every point of every object once per tick; kNearby samples. No errors.
+// Free ground ahead: the path's next metres are drawn into a small grid as a corridor of discs a
+// little larger than the robot's; each near point is looked up there once, and where it falls on a
+// disc, the way to the touch is reckoned exactly along the path's tangent there.
+// Frames: O; the command is in the robot's heading.
+// Bounds: each object's centre and NearObjects::kMaxPoints points per tick; kNearby samples of a
+// path that is not new. No errors.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
 #include "core/navigation/config.h"
+#include "core/navigation/near_objects.h"
 #include "core/navigation/types.h"
 #include "core/navigation/walker_avoidance.h"
 #include "core/objects/object.h"
@@ -67,9 +71,11 @@ class PathFollower {
   void locate(const RobotPose& robot);
   std::size_t sample_at(double along_m) const;
   double curve_limit_m_s() const;
+  double corridor_radius_m() const { return config_.half_width_m + 0.5 * config_.map.clearance_m; }
   void draw_corridor(const RobotPose& robot);
   void draw_disc(const Vector2& p_O_m, std::uint8_t number);
   void measure_free_way(const RobotPose& robot, const objects::Objects& objects);
+  double way_to_touch_m(const Vector2& p_O_m, std::uint8_t number) const;
   double speed_limit_m_s();
   VelocityCommand steer(const RobotPose& robot, double speed_m_s);
   VelocityCommand near_command(const RobotPose& robot, double speed_m_s);
@@ -78,6 +84,7 @@ class PathFollower {
   double turning_share(double error_rad) const;
 
   NavigationConfig config_;
+  NearObjects near_;
   WalkerAvoidance walkers_;
   const Path* path_ = nullptr;
   bool fresh_ = true;
@@ -85,9 +92,15 @@ class PathFollower {
   double off_path_m_ = 0;
   double to_end_m_ = 0;
   double free_m_ = 0;
-  double corridor_end_m_ = 0;
+  struct Disc {
+    Vector2 p_O_m = Vector2::Zero();
+    Vector2 to_O = Vector2(1, 0);  // towards the next one
+    double way_m = 0;
+  };
+
   Vector2 corridor_corner_O_m_ = Vector2::Zero();
-  std::array<double, kClear> corridor_m_{};  // way to each drawn disc
+  std::size_t discs_ = 0;
+  std::array<Disc, kClear> corridor_O_m_;
   std::array<std::uint8_t, static_cast<std::size_t>(kGridSide) * kGridSide> corridor_{};
   VelocityCommand command_;
   bool started_ = false;

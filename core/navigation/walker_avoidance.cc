@@ -22,10 +22,10 @@ void WalkerAvoidance::reset(const NavigationConfig& config) {
   last_direction_ = kDirections;
 }
 
-void WalkerAvoidance::gather(const Intent& intent, const objects::Objects& objects, TimeNs stamp) {
+void WalkerAvoidance::gather(const Intent& intent, const NearObjects& near, TimeNs stamp) {
   walkers_.clear();
-  for (const objects::Object& object : objects) {
-    if (!object.moving || object.kind == objects::ObjectClass::kGround) continue;
+  for (const auto& moving : near.moving()) {
+    const objects::Object& object = *moving.object;
     Walker walker;
     walker.velocity_O_m_s = object.velocity_O_m_s;
     const double age_s = larger(0.0, (stamp - object.last_seen).seconds());
@@ -39,13 +39,7 @@ void WalkerAvoidance::gather(const Intent& intent, const objects::Objects& objec
     walker.now_m = math::sqrt((walker.p_O_m - intent.robot.p_O_m).squaredNorm());
     const double speed_m_s = math::sqrt(walker.velocity_O_m_s.squaredNorm()) + config_.cruise_m_s;
     if (walker.now_m > walker.keep_m + speed_m_s * config_.walker_horizon_s) continue;
-    if (ok(walkers_.push_back(walker))) continue;
-    // The farthest gives way.
-    std::size_t far = 0;
-    for (std::size_t i = 1; i < walkers_.size(); ++i) {
-      if (walkers_[i].now_m > walkers_[far].now_m) far = i;
-    }
-    if (walkers_[far].now_m > walker.now_m) walkers_[far] = walker;
+    static_cast<void>(walkers_.push_back(walker));
   }
 }
 
@@ -62,24 +56,31 @@ double WalkerAvoidance::room_m(const Walker& walker, const Vector2& from_O_m,
   return least_m - smaller(walker.keep_m, walker.now_m - 0.02);
 }
 
-double WalkerAvoidance::room_along_m(const Intent& intent, double share) const {
-  const double step_s = config_.walker_horizon_s / static_cast<double>(kSteps);
+// From all walkers.
+double WalkerAvoidance::room_at_m(const Vector2& from_O_m, const Vector2& velocity_O_m_s,
+                                  double from_s, double to_s) const {
   double room = config_.walker_horizon_s * 10.0;
+  for (const Walker& walker : walkers_) {
+    room = smaller(room, room_m(walker, from_O_m, velocity_O_m_s, from_s, to_s));
+  }
+  return room;
+}
+
+double WalkerAvoidance::room_along_m(const Intent& intent, double share, double asked_m) const {
   Vector2 at_O_m = intent.robot.p_O_m;
-  std::size_t sample = 0;
-  for (std::size_t i = 0; i < kSteps; ++i) {
-    Vector2 next_O_m = at_O_m;
-    if (intent.path != nullptr && !intent.path->empty() && share > 0) {
-      const double ahead_m = share * intent.speed_m_s * step_s * static_cast<double>(i + 1);
-      const Path& path = *intent.path;
-      while (sample + 1 < path.size() && path[sample].along_m < intent.at_m + ahead_m) ++sample;
-      next_O_m = path[sample].p_O_m + intent.off_path_O_m * smaller(1.0, 1.0 / (1.0 + ahead_m));
-    }
-    const Vector2 velocity = (next_O_m - at_O_m) / step_s;
+  const bool stands = intent.path == nullptr || intent.path->empty() || share <= 0;
+  if (stands) return room_at_m(at_O_m, Vector2::Zero(), 0, config_.walker_horizon_s);
+  const double step_s = config_.walker_horizon_s / static_cast<double>(kSteps);
+  const Path& path = *intent.path;
+  double room = config_.walker_horizon_s * 10.0;
+  std::size_t sample = intent.sample;
+  for (std::size_t i = 0; i < kSteps && room >= asked_m; ++i) {
+    const double ahead_m = share * intent.speed_m_s * step_s * static_cast<double>(i + 1);
+    while (sample + 1 < path.size() && path[sample].along_m < intent.at_m + ahead_m) ++sample;
+    const Vector2 next_O_m =
+        path[sample].p_O_m + intent.off_path_O_m * smaller(1.0, 1.0 / (1.0 + ahead_m));
     const double from_s = step_s * static_cast<double>(i);
-    for (const Walker& walker : walkers_) {
-      room = smaller(room, room_m(walker, at_O_m, velocity, from_s, from_s + step_s));
-    }
+    room = smaller(room, room_at_m(at_O_m, (next_O_m - at_O_m) / step_s, from_s, from_s + step_s));
     at_O_m = next_O_m;
   }
   return room;
@@ -96,7 +97,7 @@ Vector2 WalkerAvoidance::step_O_m_s(const RobotPose& robot, std::size_t directio
 }
 
 // Directions in which something stands.
-void WalkerAvoidance::close_ways(const RobotPose& robot, const objects::Objects& objects) {
+void WalkerAvoidance::close_ways(const RobotPose& robot, const NearObjects& near) {
   std::array<Vector2, kDirections> unit;
   for (std::size_t i = 0; i < kDirections; ++i) {
     const Vector2 step = step_O_m_s(robot, i);
@@ -105,9 +106,8 @@ void WalkerAvoidance::close_ways(const RobotPose& robot, const objects::Objects&
     unit[i] = open_[i] ? Vector2(step / speed) : Vector2(1, 0);
   }
   const double keep_m = radius_m_ + kGap_m;
-  for (const objects::Object& object : objects) {
-    if (object.moving || object.kind == objects::ObjectClass::kGround) continue;
-    for (const Vector2& p_O_m : object.points_O_m) {
+  for (const objects::Object* object : near.standing()) {
+    for (const Vector2& p_O_m : object->points_O_m) {
       const Vector2 to_m = p_O_m - robot.p_O_m;
       if (to_m.squaredNorm() > math::square(kStepAside_m + keep_m)) continue;
       for (std::size_t i = 0; i < kDirections; ++i) {
@@ -121,20 +121,16 @@ void WalkerAvoidance::close_ways(const RobotPose& robot, const objects::Objects&
   }
 }
 
-Evasion WalkerAvoidance::step_aside(const Intent& intent, const objects::Objects& objects) {
-  close_ways(intent.robot, objects);
+Evasion WalkerAvoidance::step_aside(const Intent& intent, const NearObjects& near) {
+  close_ways(intent.robot, near);
   Evasion evasion;
   evasion.share = 0;
-  double best_m = room_along_m(intent, 0);
+  double best_m = room_at_m(intent.robot.p_O_m, Vector2::Zero(), 0, config_.walker_horizon_s);
   std::size_t chosen = kDirections;
   for (std::size_t i = 0; i < kDirections; ++i) {
     if (!open_[i]) continue;
     const Vector2 velocity = step_O_m_s(intent.robot, i);
-    double room = config_.walker_horizon_s * 10.0;
-    for (const Walker& walker : walkers_) {
-      room =
-          smaller(room, room_m(walker, intent.robot.p_O_m, velocity, 0, config_.walker_horizon_s));
-    }
+    double room = room_at_m(intent.robot.p_O_m, velocity, 0, config_.walker_horizon_s);
     if (i == last_direction_) room += 2.0 * kHysteresis_m;
     if (room <= best_m) continue;
     best_m = room;
@@ -147,9 +143,8 @@ Evasion WalkerAvoidance::step_aside(const Intent& intent, const objects::Objects
   return evasion;
 }
 
-Evasion WalkerAvoidance::decide(const Intent& intent, const objects::Objects& objects,
-                                TimeNs stamp) {
-  gather(intent, objects, stamp);
+Evasion WalkerAvoidance::decide(const Intent& intent, const NearObjects& near, TimeNs stamp) {
+  gather(intent, near, stamp);
   if (walkers_.empty()) {
     last_share_ = 0;
     last_direction_ = kDirections;
@@ -158,13 +153,13 @@ Evasion WalkerAvoidance::decide(const Intent& intent, const objects::Objects& ob
   for (std::size_t i = 0; i < kShares; ++i) {
     const double asked_m =
         i < last_share_ || (last_direction_ != kDirections) ? kHysteresis_m : 0.0;
-    if (room_along_m(intent, kShareOf[i]) < asked_m) continue;
+    if (room_along_m(intent, kShareOf[i], asked_m) < asked_m) continue;
     last_share_ = i;
     last_direction_ = kDirections;
     return {kShareOf[i], false, Vector2::Zero()};
   }
   last_share_ = kShares;
-  return step_aside(intent, objects);
+  return step_aside(intent, near);
 }
 
 }  // namespace surefoot::navigation

@@ -12,8 +12,8 @@
 #include <array>
 
 #include "core/navigation/config.h"
+#include "core/navigation/near_objects.h"
 #include "core/navigation/types.h"
-#include "core/objects/object.h"
 
 namespace surefoot::navigation {
 
@@ -21,7 +21,8 @@ namespace surefoot::navigation {
 struct Intent {
   RobotPose robot;
   const Path* path = nullptr;              // null: stand
-  double at_m = 0;                         // arc length of the robot's projection
+  std::size_t sample = 0;                  // of the path, just before the robot's projection
+  double at_m = 0;                         // arc length of the projection
   Vector2 off_path_O_m = Vector2::Zero();  // from there to the robot
   double speed_m_s = 0;
 };
@@ -34,11 +35,13 @@ struct Evasion {
 
 class WalkerAvoidance {
  public:
+  static constexpr double kLooksAround_m = 3.0;  // for what stands; half_length_m is 2 m at most
+
   void reset(const NavigationConfig& config);
-  Evasion decide(const Intent& intent, const objects::Objects& objects, TimeNs stamp);
+  Evasion decide(const Intent& intent, const NearObjects& near, TimeNs stamp);
 
  private:
-  static constexpr std::size_t kMaxWalkers = 16;
+  static constexpr std::size_t kMaxWalkers = NearObjects::kMaxMoving;
   static constexpr std::size_t kDirections = 8;
   static constexpr std::size_t kShares = 5;
   static constexpr std::size_t kSteps = 12;
@@ -50,13 +53,16 @@ class WalkerAvoidance {
     double now_m = 0;   // distance
   };
 
-  void gather(const Intent& intent, const objects::Objects& objects, TimeNs stamp);
-  double room_along_m(const Intent& intent, double share) const;
+  void gather(const Intent& intent, const NearObjects& near, TimeNs stamp);
+  // Stops at the first step that leaves less than `asked_m`.
+  double room_along_m(const Intent& intent, double share, double asked_m) const;
+  double room_at_m(const Vector2& from_O_m, const Vector2& velocity_O_m_s, double from_s,
+                   double to_s) const;
   double room_m(const Walker& walker, const Vector2& from_O_m, const Vector2& velocity_O_m_s,
                 double from_s, double to_s) const;
   Vector2 step_O_m_s(const RobotPose& robot, std::size_t direction) const;
-  void close_ways(const RobotPose& robot, const objects::Objects& objects);
-  Evasion step_aside(const Intent& intent, const objects::Objects& objects);
+  void close_ways(const RobotPose& robot, const NearObjects& near);
+  Evasion step_aside(const Intent& intent, const NearObjects& near);
 
   double half_length_m_ = 0;
   double half_width_m_ = 0;

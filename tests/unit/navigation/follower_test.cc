@@ -107,7 +107,8 @@ TEST(PathFollower, StopsBeforeWhatStandsOnThePath) {
     const Path path = winding(15, 1000, 0);
     objects->clear();
     objects::Object post;
-    ASSERT_TRUE(ok(post.points_O_m.push_back(Vector2(8, 0.1))));
+    post.centre_O_m = Vector2(8, 0.1);
+    ASSERT_TRUE(ok(post.points_O_m.push_back(post.centre_O_m)));
     ASSERT_TRUE(ok(objects->push_back(post)));
     follower->reset(config);
     follower->set_path(&path);
@@ -115,9 +116,9 @@ TEST(PathFollower, StopsBeforeWhatStandsOnThePath) {
     Body body;
     for (int tick = 0; tick < 8000; ++tick) {
       const VelocityCommand command = follower->follow(body.pose, *objects, milliseconds(5) * tick);
-      // What braking needs never exceeds the free way but by the corridor's grain (a sample).
+      // What braking needs never exceeds the free way but by 5 cm.
       EXPECT_LE(command.forward_m_s * command.forward_m_s,
-                2 * config.follow.braking_m_s2 * (follower->free_m() + 0.12));
+                2 * config.follow.braking_m_s2 * (follower->free_m() + 0.05));
       body.move(command, random, 0);
     }
     EXPECT_EQ(follower->reason(), SpeedReason::kBlocked);
