@@ -72,8 +72,9 @@ class CostMap {
   bool lethal_at(const Vector2& p_O_m) const { return lethal(cell_of(p_O_m)); }
   // No lethal cell under the segment, sampled every half cell.
   bool passable(const Vector2& from_O_m, const Vector2& to_O_m) const;
-  // The free cell nearest to a cell, by distance, then by index; false: there is none.
-  bool nearest_free(Cell from, Cell& found) const;
+  // The free cell nearest to a cell, by distance, then by index; false: there is none within
+  // `rings` cells along an axis.
+  bool nearest_free(Cell from, std::int32_t rings, Cell& found) const;
 
   void set_cost(Cell cell, std::uint16_t cost) { costs_[index(cell)] = cost; }
   // Takes the share of 256ths off a cell that may be walked.
@@ -85,9 +86,7 @@ class CostMap {
   static constexpr std::int32_t kKernelSide = 2 * kMaxReach + 1;
 
   void stamp(const Vector2& p_O_m);
-  void stamp_walker(const Vector2& p_O_m, bool lethal);
-  template <class Rule>
-  void spread(const Vector2& p_O_m, const Rule& rule);
+  void spread(const Vector2& p_O_m, std::uint16_t most_cost);
   std::uint16_t kernel_cost(double distance_m) const;
 
   std::int32_t side_ = 0;

@@ -9,6 +9,7 @@
 
 #include "core/navigation/cost_map.h"
 #include "core/navigation/grid_search.h"
+#include "core/navigation/reach.h"
 #include "core/navigation/wayfinding.h"
 
 namespace surefoot::navigation {
@@ -16,7 +17,9 @@ namespace surefoot::navigation {
 // The goal's cell, or the nearest free one within moved_m of it.
 void goal_ends(const CostMap& map, const Vector2& goal_O_m, double moved_m, Ends& ends);
 
-// The border's cells; the rest of the way as the crow flies (a null field) or along the field.
-void border_ends(const CostMap& map, const Vector2& goal_O_m, const WayField* field, Ends& ends);
+// The border's cells, of these that can be reached (null: all); the rest of the way as the crow
+// flies (a null field) or along the field.
+void border_ends(const CostMap& map, const Vector2& goal_O_m, const WayField* field,
+                 const Reach* reach, Ends& ends);
 
 }  // namespace surefoot::navigation

@@ -1,6 +1,11 @@
 #include "core/navigation/planner.h"
 
 namespace surefoot::navigation {
+namespace {
+
+constexpr double kDoubted_s = 300.0;  // what was remembered for longer may have changed
+
+}  // namespace
 
 void Planner::reset(const NavigationConfig& config) {
   config_ = config;
@@ -8,6 +13,7 @@ void Planner::reset(const NavigationConfig& config) {
   memory_.reset(config);
   stability_.reset(config.shape);
   smoothing_.reset(config.shape);
+  started_ = false;
   forget();
 }
 
@@ -39,43 +45,42 @@ Cell Planner::choose_start(const PlanInput& input) {
     start_O_m = robot_O_m;
   }
   Cell start = map_.cell_of(start_O_m);
-  if (map_.lethal(start)) static_cast<void>(map_.nearest_free(start, start));
+  if (map_.lethal(start)) static_cast<void>(map_.nearest_free(start, map_.side(), start));
   return start;
 }
 
-SearchResult Planner::search_beyond(const PlanInput& input, Cell start, bool lenient, Plan& plan) {
-  if (!field_.spread(memory_, input.goal_O_m, config_.way.unknown_factor, lenient)) return {};
-  border_ends(map_, input.goal_O_m, &field_, ends_);
-  ++plan.searches;
-  return search_.search(map_, start, ends_, searched_O_m_);
+// Border cells from where the field leads on, of those that can be reached.
+bool Planner::find_ends_beyond(const PlanInput& input, bool lenient) {
+  if (!field_.spread(memory_, input.goal_O_m, config_.way.unknown_factor, lenient)) return false;
+  border_ends(map_, input.goal_O_m, &field_, &reach_, ends_);
+  return !ends_.list.empty();
 }
 
 // Whether anything leads from the goal to the map's border.
-bool Planner::goal_leads_out(const PlanInput& input, Plan& plan) {
-  goal_ends(map_, input.goal_O_m, config_.follow.arrive_m + map_.lethal_radius_m(), ends_);
+bool Planner::goal_leads_out(const PlanInput& input) {
   if (ends_.list.empty()) return !map_.inside(map_.cell_of(input.goal_O_m));
-  const Cell goal = map_.cell(ends_.list[0].cell);
-  border_ends(map_, input.goal_O_m, nullptr, ends_);
-  ++plan.searches;
-  const SearchResult result = search_.search(map_, goal, ends_, searched_O_m_);
-  return result.found || result.partial;
+  reach_.flood(map_, map_.cell(ends_.list[0].cell));
+  return reach_.touches_border();
 }
 
+// Floods tell beforehand whether there is a way: at most one search, and that one finds.
 SearchResult Planner::search(const PlanInput& input, Cell start, Plan& plan) {
   goal_ends(map_, input.goal_O_m, config_.follow.arrive_m + map_.lethal_radius_m(), ends_);
-  SearchResult result;
-  if (!ends_.list.empty()) {
-    ++plan.searches;
-    result = search_.search(map_, start, ends_, searched_O_m_);
-    plan.to_goal = result.found;
-    if (result.found || result.partial) return result;
+  reach_.flood(map_, start);
+  plan.to_goal = !ends_.list.empty() && reach_.contains(ends_.list[0].cell);
+  if (!plan.to_goal) {
+    if (!goal_leads_out(input)) {
+      plan.outcome = PlanOutcome::kGoalEnclosed;
+      return {};
+    }
+    reach_.flood(map_, start);
+    if (!find_ends_beyond(input, false) && !find_ends_beyond(input, true)) {
+      plan.outcome = PlanOutcome::kRobotEnclosed;
+      return {};
+    }
   }
-  if (!goal_leads_out(input, plan)) {
-    plan.outcome = PlanOutcome::kGoalEnclosed;
-    return {};
-  }
-  result = search_beyond(input, start, false, plan);
-  if (!result.found && !result.partial) result = search_beyond(input, start, true, plan);
+  const SearchResult result = search_.search(map_, start, ends_, searched_O_m_);
+  plan.to_goal = plan.to_goal && result.found;
   if (!result.found && !result.partial) plan.outcome = PlanOutcome::kRobotEnclosed;
   return result;
 }
@@ -103,11 +108,13 @@ void Planner::judge(const PlanInput& input, const SearchResult& result, Plan& pl
   stability_.forget();
   ++enclosed_plans_;
   if (enclosed_plans_ < config_.way.no_path_plans) return;
-  if (forgot_) {
+  const bool old = (input.stamp - known_since_).seconds() > kDoubted_s;
+  if (forgot_ || !old) {
     plan.enclosed = true;
     return;
   }
   forgot_ = true;
+  known_since_ = input.stamp;
   enclosed_plans_ = 0;
   memory_.forget_far(input.robot.p_O_m);
 }
@@ -117,11 +124,12 @@ void Planner::run(const PlanInput& input, Plan& plan) {
   plan.enclosed = false;
   plan.live_lock = false;
   plan.rest_m = 0;
-  plan.searches = 0;
   plan.smoothing = {};
   plan.goal_number = input.goal_number;
   plan.stamp = input.stamp;
   plan.path.clear();
+  if (!started_) known_since_ = input.stamp;
+  started_ = true;
   make_map(input);
   const Cell start = choose_start(input);
   stability_.discount(map_, input.robot.p_O_m);

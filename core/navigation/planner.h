@@ -8,9 +8,10 @@
 //  3. The path behind the robot is put before it, the whole is smoothed.
 //
 // A start on lethal ground is moved to the nearest free cell; the path leads there first. Found
-// enclosed `no_path_plans` times in a row, everything far is forgotten once and found out anew; if
-// that ends the same, `enclosed` is final until a plan finds a way.
-// Frame: O, m. Bounds: those of the parts; at most three searches and two fields per plan.
+// enclosed `no_path_plans` times in a row is `enclosed`, final until a plan finds a way. If what is
+// remembered reaches back more than five minutes, everything far is forgotten first, once per goal,
+// and must be found out anew.
+// Frame: O, m. Bounds: those of the parts; three floods, two fields, one search per plan at most.
 #pragma once
 
 #include "core/navigation/config.h"
@@ -20,6 +21,7 @@
 #include "core/navigation/ground_memory.h"
 #include "core/navigation/path_smoothing.h"
 #include "core/navigation/path_stability.h"
+#include "core/navigation/reach.h"
 #include "core/navigation/types.h"
 #include "core/navigation/wayfinding.h"
 #include "core/objects/object.h"
@@ -50,7 +52,6 @@ struct Plan {
   bool live_lock = false;    // no progress for too long
   double rest_m = 0;         // of the way, in metres of free ground
   std::uint32_t closed = 0;  // cells
-  std::uint32_t searches = 0;
   SmoothingResult smoothing;
   std::uint32_t goal_number = 0;
   TimeNs stamp;
@@ -72,8 +73,8 @@ class Planner {
   void make_map(const PlanInput& input);
   Cell choose_start(const PlanInput& input);
   SearchResult search(const PlanInput& input, Cell start, Plan& plan);
-  SearchResult search_beyond(const PlanInput& input, Cell start, bool lenient, Plan& plan);
-  bool goal_leads_out(const PlanInput& input, Plan& plan);
+  bool find_ends_beyond(const PlanInput& input, bool lenient);
+  bool goal_leads_out(const PlanInput& input);
   void shape(const PlanInput& input, const SearchResult& result, Plan& plan);
   void judge(const PlanInput& input, const SearchResult& result, Plan& plan);
   double metres(std::uint32_t cost) const;
@@ -86,12 +87,15 @@ class Planner {
   PathStability stability_;
   PathSmoothing smoothing_;
   ProgressWatch watch_;
+  Reach reach_;
   Ends ends_;
   RawPath searched_O_m_;
   RawPath raw_O_m_;
   RawPath over_smoothed_O_m_;
   std::uint32_t enclosed_plans_ = 0;
-  bool forgot_ = false;
+  bool forgot_ = false;  // for this goal
+  bool started_ = false;
+  TimeNs known_since_;
 };
 
 }  // namespace surefoot::navigation

@@ -10,8 +10,9 @@ constexpr std::uint16_t kBesideBlocked = 4;
 constexpr std::uint16_t kTightCost = 32;
 constexpr std::int32_t kSeedReach = 3;  // cells from the goal
 constexpr std::uint32_t kUnit = kFinePerWay * kFreeCost * kStraight / (kStraight * 4);
-constexpr std::array<std::int32_t, 8> kDx{1, 0, -1, 0, 1, -1, -1, 1};
-constexpr std::array<std::int32_t, 8> kDy{0, 1, 0, -1, 1, 1, -1, -1};
+// Neighbours: right, up, left, down, then the corners between them.
+constexpr std::array<std::int32_t, 8> kTo{
+    1, kWaySide, -1, -kWaySide, kWaySide + 1, kWaySide - 1, -kWaySide - 1, -kWaySide + 1};
 
 bool in_square(std::int32_t x, std::int32_t y) {
   return x >= 0 && y >= 0 && x < kWaySide && y < kWaySide;
@@ -42,6 +43,7 @@ void WayField::weigh(double unknown_factor, bool lenient) {
       const bool beside =
           blocks(x - 1, y) || blocks(x + 1, y) || blocks(x, y - 1) || blocks(x, y + 1);
       if (weight != 0 && beside) weight = static_cast<std::uint16_t>(weight + kBesideBlocked);
+      if (!in_square(x - 1, y - 1) || !in_square(x + 1, y + 1)) weight = 0;
       weights_[at(x, y)] = weight;
     }
   }
@@ -72,8 +74,8 @@ void WayField::put(std::uint32_t cell, std::uint32_t cost) {
 
 bool WayField::seed(const Vector2& goal_O_m) {
   const Cell goal = memory_->cell_of(goal_O_m);
-  const std::int32_t gx = math::clamp(goal.x - low_.x, 0, kWaySide - 1);
-  const std::int32_t gy = math::clamp(goal.y - low_.y, 0, kWaySide - 1);
+  const std::int32_t gx = math::clamp(goal.x - low_.x, 1, kWaySide - 2);
+  const std::int32_t gy = math::clamp(goal.y - low_.y, 1, kWaySide - 2);
   std::int32_t best = -1;
   std::uint32_t seed = kNone;
   for (std::int32_t y = gy - kSeedReach; y <= gy + kSeedReach; ++y) {
@@ -93,21 +95,22 @@ bool WayField::seed(const Vector2& goal_O_m) {
   return true;
 }
 
+// The square's outermost cells are impassable: what is expanded has all its neighbours.
 void WayField::expand(std::uint32_t cell) {
-  const auto x = static_cast<std::int32_t>(cell % kWaySide);
-  const auto y = static_cast<std::int32_t>(cell / kWaySide);
+  const std::uint32_t so_far = costs_[cell];
   std::array<bool, 4> free{};
-  for (std::size_t i = 0; i < kDx.size(); ++i) {
-    const std::int32_t to_x = x + kDx[i];
-    const std::int32_t to_y = y + kDy[i];
-    if (!in_square(to_x, to_y)) continue;
-    const std::uint32_t to = at(to_x, to_y);
-    if (weights_[to] == 0) continue;
-    if (i < 4) free[i] = true;
-    if (i >= 4 && !(free[i - 4] && free[(i - 3) % 4])) continue;
-    // The way is walked from `to` into `cell`.
-    const std::uint32_t cost = costs_[cell] + weights_[cell] * (i < 4 ? kStraight : kAcross);
-    if (cost < costs_[to]) put(to, cost);
+  // The way is walked from `to` into `cell`.
+  const std::uint32_t straight = so_far + weights_[cell] * kStraight;
+  const std::uint32_t across = so_far + weights_[cell] * kAcross;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::uint32_t to = cell + static_cast<std::uint32_t>(kTo[i]);
+    free[i] = weights_[to] != 0;
+    if (free[i] && straight < costs_[to]) put(to, straight);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::uint32_t to = cell + static_cast<std::uint32_t>(kTo[i + 4]);
+    if (across >= costs_[to] || weights_[to] == 0) continue;
+    if (free[i] && free[(i + 1) % 4]) put(to, across);
   }
 }
 

@@ -6,7 +6,8 @@
 // times 4 on seen ground, 4 unknown_factor on unknown ground, 4 more beside blocked ground. Seen
 // ground is cheaper, so that the side of an obstacle on which the robot has looked is kept.
 // Blocked ground is impassable; tight ground too, unless `lenient`: then it costs 32, for gaps that
-// the coarse cells close but the cost map may not. A goal beyond the memory is moved to its border.
+// the coarse cells close but the cost map may not. A goal beyond the memory is moved to its border;
+// the memory's outermost cells are impassable.
 //
 // ProgressWatch: the rest of the way must fall by progress_m within live_lock_s. It may rise while
 // the robot learns: that starts the watch anew, but each cell can be learnt once only, so it ends.

@@ -42,7 +42,7 @@ Case random_case(Random& random, std::int32_t side) {
   goal.y = any();
   if (random.below(3) == 0) {
     goal.x += 3 * side;
-    border_ends(*made.map, made.map->centre_of_O_m(goal), nullptr, made.ends);
+    border_ends(*made.map, made.map->centre_of_O_m(goal), nullptr, nullptr, made.ends);
   } else {
     goal_ends(*made.map, made.map->centre_of_O_m(goal), 10.0, made.ends);
   }
@@ -99,7 +99,7 @@ TEST(GridSearch, CostsWhatAnExhaustiveSearchFindsOnEveryMap) {
   const auto search = std::make_unique<GridSearch>();
   const auto path = std::make_unique<RawPath>();
   int found = 0;
-  for (int i = 0; i < tests::samples(10000, 200); ++i) {
+  for (int i = 0; i < tests::samples(3000, 200); ++i) {
     const auto side = static_cast<std::int32_t>(20 + random.below(20));
     const Case c = random_case(random, side);
     const std::uint64_t wanted = exhaustive(c);
@@ -115,7 +115,7 @@ TEST(GridSearch, CostsWhatAnExhaustiveSearchFindsOnEveryMap) {
     ASSERT_EQ(path_cost(*c.map, *path) + rest, wanted);
     ASSERT_EQ(c.map->cell_of((*path)[0]), c.start);
   }
-  EXPECT_GT(found, tests::samples(4000, 80));
+  EXPECT_GT(found, tests::samples(1200, 80));
 }
 
 TEST(GridSearch, GivesThePathToTheBestCellWhenABoundIsMet) {
@@ -155,7 +155,7 @@ TEST(GoalProjection, ChoosesTheBorderCellByTheWholeWay) {
   // A wall before the border, open at its low end only.
   for (std::int32_t y = 5; y < 50; ++y) map->set_cost({45, y}, kLethalCost);
   Ends ends;
-  border_ends(*map, Vector2(50, 0), nullptr, ends);
+  border_ends(*map, Vector2(50, 0), nullptr, nullptr, ends);
   const auto search = std::make_unique<GridSearch>();
   const auto path = std::make_unique<RawPath>();
   const SearchResult result = search->search(*map, {25, 25}, ends, *path);
