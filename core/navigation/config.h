@@ -127,8 +127,8 @@ struct FollowConfig {
                "error of the heading above which the robot turns on the spot");
     visit.real("reaction_s", self.reaction_s, {0.0, 2.0}, "from a command to its effect");
     visit.real("walker_margin_m", self.walker_margin_m, {0.0, 3.0}, "kept from walkers");
-    visit.real("walker_horizon_s", self.walker_horizon_s, {0.5, 10.0},
-               "how far ahead walkers are looked at");
+    visit.real("walker_horizon_s", self.walker_horizon_s, {0.0, 10.0},
+               "how far ahead walkers are looked at; 0: as if they stood");
     visit.real("arrive_m", self.arrive_m, {0.02, 5.0}, "from the goal: arrived");
   }
 };

@@ -10,7 +10,7 @@ constexpr std::uint8_t kLeftOut = 0xff;
 }  // namespace
 
 void NearObjects::gather(const objects::Objects& objects, const Vector2& p_O_m,
-                         double points_reach_m) {
+                         double points_reach_m, bool all_stand) {
   moving_.clear();
   farthest_ = 0;
   points_in_ring_.fill(0);
@@ -22,7 +22,7 @@ void NearObjects::gather(const objects::Objects& objects, const Vector2& p_O_m,
     ring_of_[i] = kLeftOut;
     if (object.kind == objects::ObjectClass::kGround) continue;
     const double far2 = (object.centre_O_m - p_O_m).squaredNorm();
-    if (object.moving) {
+    if (object.moving && !all_stand) {
       take_moving(object, far2);
       continue;
     }

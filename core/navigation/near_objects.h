@@ -24,8 +24,9 @@ class NearObjects {
   static constexpr std::size_t kMaxMoving = 16;
   static constexpr double kObjectReach_m = 4.5;  // a piece of 3 m, its centre in a corner
 
-  // Refers to the objects until the next call.
-  void gather(const objects::Objects& objects, const Vector2& p_O_m, double points_reach_m);
+  // Refers to the objects until the next call. `all_stand`: what moves is taken for standing.
+  void gather(const objects::Objects& objects, const Vector2& p_O_m, double points_reach_m,
+              bool all_stand);
 
   const auto& standing() const { return standing_; }
   const auto& moving() const { return moving_; }

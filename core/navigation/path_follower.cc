@@ -163,7 +163,8 @@ void PathFollower::measure_free_way(const RobotPose& robot, const objects::Objec
   draw_corridor(robot);
   const Vector2 off_m = robot.p_O_m - place_.p_O_m;
   near_.gather(objects, robot.p_O_m,
-               corridor_O_m_[discs_ - 1].way_m + math::sqrt(off_m.squaredNorm()) + 1.0);
+               corridor_O_m_[discs_ - 1].way_m + math::sqrt(off_m.squaredNorm()) + 1.0,
+               config_.follow.walker_horizon_s <= 0);
   const double beside2 = 1.5 * math::square(corridor_radius_m());
   const Vector2 to_O = (*path_)[sample_at(place_.at_m + 0.3)].p_O_m - robot.p_O_m;
   const double front_m = larger(0.0, config_.half_length_m - config_.half_width_m) + kStopGap_m;
@@ -279,7 +280,8 @@ VelocityCommand PathFollower::follow(const RobotPose& robot, const objects::Obje
   } else {
     reason_ = SpeedReason::kNoPath;
     free_m_ = 0;
-    near_.gather(objects, robot.p_O_m, WalkerAvoidance::kLooksAround_m);
+    near_.gather(objects, robot.p_O_m, WalkerAvoidance::kLooksAround_m,
+                 config_.follow.walker_horizon_s <= 0);
   }
   const Evasion evasion = walkers_.decide(intent, near_, stamp);
   if (evasion.aside) {

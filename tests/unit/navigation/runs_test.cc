@@ -40,7 +40,7 @@ World forest(std::uint64_t seed, double length_m, double per_m2) {
 }
 
 TEST(Runs, CrossesForests) {
-  for (int seed = 0; seed < tests::samples(20, 2); ++seed) {
+  for (int seed = 0; seed < tests::samples(10, 2); ++seed) {
     const auto number = static_cast<std::uint64_t>(seed);
     const RunResult result = run(forest(number, 40, 0.15), options(Vector2(40, 0), number));
     EXPECT_EQ(result.state, NavigationState::kArrived) << seed << to_string(result.reason);
@@ -102,29 +102,6 @@ TEST(Runs, SaysThatThereIsNoPathWhenEnclosed) {
       EXPECT_GT(result.least_gap_m, 0.0);
     }
   }
-}
-
-TEST(Runs, WalkersCross) {
-  int unseen = 0;
-  for (int seed = 0; seed < tests::samples(40, 3); ++seed) {
-    Random random(static_cast<std::uint64_t>(seed), 5);
-    World world;
-    for (int i = 0; i < 4; ++i) {
-      test::Walker walker;
-      const double speed = random.uniform(0.5, 1.5);
-      const double side = random.below(2) == 0 ? 1 : -1;
-      const double x = random.uniform(2.0, 8.0);
-      const double meet_s = (x + random.uniform(-0.5, 0.5)) / 0.45;
-      walker.v = Vector2(0, -side * speed);
-      walker.p = Vector2(x, side * speed * meet_s);
-      world.walkers.push_back(walker);
-    }
-    const RunResult result = run(world, options(Vector2(12, 0), static_cast<std::uint64_t>(seed)));
-    EXPECT_EQ(result.state, NavigationState::kArrived) << seed << to_string(result.reason);
-    if (result.least_unseen_gap_m <= 0) ++unseen;
-    EXPECT_GT(result.least_walker_gap_m, 0) << seed;
-  }
-  EXPECT_LE(unseen, 4);  // ran into from where the robot does not look
 }
 
 int side_changes(const RunResult& result, const Vector2& middle) {

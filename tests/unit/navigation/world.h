@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -117,6 +118,7 @@ class Perception {
     });
     for (std::size_t i = 0; i < world.walkers.size(); ++i) {
       if (!sees(world, robot, world.walkers[i])) continue;
+      first_seen_s_.insert({i, t_s});
       const bool again = walkers_.count(i) == 0 || t_s - walkers_[i].seen_s > 0.5;
       walkers_[i] = {world.walkers[i], t_s, again ? t_s : walkers_[i].since_s};
     }
@@ -126,6 +128,11 @@ class Perception {
   }
 
   const objects::Objects& objects() const { return *objects_; }
+  // When a walker was published first; never: 1e9.
+  double first_seen_s(std::size_t walker) const {
+    const auto found = first_seen_s_.find(walker);
+    return found == first_seen_s_.end() ? 1e9 : found->second;
+  }
   // In view now, and for a while.
   bool knows(std::size_t walker, double t_s) const {
     const auto found = walkers_.find(walker);
@@ -204,7 +211,19 @@ class Perception {
   TimeNs stamp_;
   std::map<std::pair<int, int>, Point> points_;
   std::map<std::size_t, SeenWalker> walkers_;
+  std::map<std::size_t, double> first_seen_s_;
   std::unique_ptr<objects::Objects> objects_ = std::make_unique<objects::Objects>();
+};
+
+struct BodyState {
+  double t_s = 0;
+  RobotPose robot;
+  VelocityCommand real;
+};
+
+struct Collision {
+  double t_s = 0;
+  double first_seen_s = 0;  // the walker
 };
 
 struct RunResult {
@@ -217,6 +236,8 @@ struct RunResult {
   double least_unseen_gap_m = 1e9;  // the others
   double largest_step_m_s = 0;      // of the command, per 5 ms
   double largest_yaw_step_rad_s = 0;
+  std::vector<BodyState> states;            // each 0.1 s
+  std::vector<Collision> collisions;        // with walkers; the first with each
   std::vector<Vector2> trail;               // each second
   std::vector<std::vector<Vector2>> plans;  // each plan's path, every metre
   NavigationCounters counters;
@@ -265,7 +286,10 @@ class Simulation {
     const double t_s = tick * options_.tick_s;
     const TimeNs stamp{static_cast<std::int64_t>(t_s * 1e9)};
     if (options_.change) options_.change(world_, t_s);
-    if (tick % (per_plan / 10) == 0) perception_.look(world_, robot_, t_s);
+    if (tick % (per_plan / 10) == 0) {
+      perception_.look(world_, robot_, t_s);
+      result_.states.push_back({t_s, robot_, real_});
+    }
     if (tick % per_plan == 0) {
       navigator_->release(perception_.objects(), robot_, stamp);
       navigator_->run();
@@ -305,6 +329,9 @@ class Simulation {
       // Who comes from where the robot has not looked for a while is not its fault.
       double& least =
           perception_.knows(i, t_s) ? result_.least_walker_gap_m : result_.least_unseen_gap_m;
+      if (gap <= 0 && hit_.insert(i).second) {
+        result_.collisions.push_back({t_s, perception_.first_seen_s(i)});
+      }
       least = std::min(least, gap);
     }
   }
@@ -333,6 +360,7 @@ class Simulation {
   std::unique_ptr<Navigator> navigator_ = std::make_unique<Navigator>();
   VelocityCommand last_;
   VelocityCommand real_;
+  std::set<std::size_t> hit_;
   RunResult result_;
 };
 
