@@ -1,6 +1,8 @@
 // Whole runs in a flat world: does the robot arrive, touch nothing, and give up only when it must?
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "tests/support/samples.h"
 #include "tests/unit/navigation/parts.h"
 #include "tests/unit/navigation/world.h"
@@ -52,33 +54,36 @@ TEST(Runs, CrossesForests) {
 }
 
 TEST(Runs, GoesRoundWideWalls) {
-  for (const double width_m : {25.0, 40.0, 60.0}) {
+  for (int seed = 0; seed < tests::samples(12, 1); ++seed) {
+    Random random(static_cast<std::uint64_t>(seed), 12);
+    const double width_m = seed < 10 ? random.uniform(8, 25) : (seed == 10 ? 40 : 60);
+    const double aside_m = seed < 10 ? random.uniform(-3, 3) : 0;
     World world;
-    world.walls.push_back({Vector2(10, -width_m / 2), Vector2(10, width_m / 2)});
-    RunOptions o = options(Vector2(25, 0));
+    world.walls.push_back({Vector2(10, aside_m - width_m / 2), Vector2(10, aside_m + width_m / 2)});
+    RunOptions o = options(Vector2(25, 0), static_cast<std::uint64_t>(seed));
     o.limit_s = 500;
     const RunResult result = run(world, o);
     EXPECT_EQ(result.state, NavigationState::kArrived) << width_m << to_string(result.reason);
-    EXPECT_GT(result.least_gap_m, 0.0);
+    EXPECT_GT(result.least_gap_m, 0.0) << seed;
     EXPECT_LT(result.length_m, width_m + 40) << width_m;
   }
 }
 
 TEST(Runs, LeavesCulDeSacs) {
-  for (const double width_m : {4.0, 10.0}) {
-    for (const double depth_m : {5.0, 15.0}) {
-      World world;
-      const double half_m = width_m / 2;
-      world.walls.push_back({Vector2(5, half_m), Vector2(5 + depth_m, half_m)});
-      world.walls.push_back({Vector2(5, -half_m), Vector2(5 + depth_m, -half_m)});
-      world.walls.push_back({Vector2(5 + depth_m, -half_m), Vector2(5 + depth_m, half_m)});
-      RunOptions o = options(Vector2(30, 0));
-      o.start.p_O_m = Vector2(5 + depth_m - 2, 0);
-      const RunResult result = run(world, o);
-      EXPECT_EQ(result.state, NavigationState::kArrived)
-          << width_m << " " << depth_m << to_string(result.reason);
-      EXPECT_GT(result.least_gap_m, 0.0);
-    }
+  for (int seed = 0; seed < tests::samples(10, 1); ++seed) {
+    Random random(static_cast<std::uint64_t>(seed), 13);
+    const double half_m = random.uniform(2, 5);
+    const double depth_m = random.uniform(5, 15);
+    World world;
+    world.walls.push_back({Vector2(5, half_m), Vector2(5 + depth_m, half_m)});
+    world.walls.push_back({Vector2(5, -half_m), Vector2(5 + depth_m, -half_m)});
+    world.walls.push_back({Vector2(5 + depth_m, -half_m), Vector2(5 + depth_m, half_m)});
+    RunOptions o = options(Vector2(30, 0), static_cast<std::uint64_t>(seed));
+    o.start.p_O_m = Vector2(5 + depth_m - 2, 0);
+    const RunResult result = run(world, o);
+    EXPECT_EQ(result.state, NavigationState::kArrived)
+        << half_m << " " << depth_m << to_string(result.reason);
+    EXPECT_GT(result.least_gap_m, 0.0) << seed;
   }
 }
 
@@ -130,6 +135,64 @@ TEST(Runs, KeepsToOneSideOfASymmetricObstacle) {
     worst = std::max(worst, side_changes(result, Vector2(6, 0)));
   }
   EXPECT_LE(worst, 1);
+}
+
+// Plans made again and again on the spot before a wall, with 2 cm of noise on all that is seen.
+// A goal set anew forgets the paths.
+int changes_on_the_spot(bool remember) {
+  const auto navigator = std::make_unique<Navigator>();
+  const auto objects = std::make_unique<objects::Objects>();
+  Random random(1);
+  EXPECT_TRUE(ok(navigator->reset(test::small_robot())));
+  EXPECT_TRUE(ok(navigator->set_goal(Vector2(12, 0))));
+  RunResult result;
+  for (int i = 0; i < tests::samples(100, 10); ++i) {
+    objects->clear();
+    for (double y = -3; y <= 3; y += 1.5) {
+      objects::Object piece;
+      piece.centre_O_m = Vector2(6, y);
+      for (int k = -5; k <= 5; ++k) {
+        const double x = 6 + 0.02 * random.normal();
+        static_cast<void>(piece.points_O_m.push_back(Vector2(x, y + 0.15 * k)));
+      }
+      static_cast<void>(objects->push_back(piece));
+    }
+    RobotPose robot;
+    robot.p_O_m[1] = 0.02 * random.normal();
+    if (!remember) {
+      EXPECT_TRUE(ok(navigator->set_goal(Vector2(12, 0))));
+    }
+    navigator->plan(*objects, robot, milliseconds(1000) * i);
+    std::vector<Vector2> plan;
+    for (const PathPoint& point : navigator->path()) plan.push_back(point.p_O_m);
+    result.plans.push_back(plan);
+  }
+  return side_changes(result, Vector2(6, 0));
+}
+
+TEST(Runs, ChangesSidesMoreOftenWithoutMemoryOfThePath) {
+  const int with = changes_on_the_spot(true);
+  const int without = changes_on_the_spot(false);
+  std::printf("changes of side in 100 plans: %d, without memory of the path %d\n", with, without);
+  EXPECT_LE(with, 1);
+  EXPECT_GT(without, tests::samples(5, 0));
+}
+
+// Two walls with a gate 6 m ahead that closes while the robot is on its way to it.
+TEST(Runs, GoesRoundWhenAGateCloses) {
+  for (int seed = 0; seed < tests::samples(10, 1); ++seed) {
+    World world;
+    world.walls.push_back({Vector2(6, -6), Vector2(6, -1)});
+    world.walls.push_back({Vector2(6, 1), Vector2(6, 6)});
+    RunOptions o = options(Vector2(12, 0), static_cast<std::uint64_t>(seed));
+    o.change = [seed](World& changed, double t_s) {
+      if (t_s < 3.0 + 0.5 * seed || changed.walls.size() > 2) return;
+      changed.walls.push_back({Vector2(6, -1), Vector2(6, 1)});
+    };
+    const RunResult result = run(world, o);
+    EXPECT_EQ(result.state, NavigationState::kArrived) << seed << to_string(result.reason);
+    EXPECT_GT(result.least_gap_m, 0.0) << seed;
+  }
 }
 
 }  // namespace
