@@ -127,6 +127,34 @@ TEST(PathFollower, StopsBeforeWhatStandsOnThePath) {
   }
 }
 
+TEST(NearObjects, KeepsTheNearestUpToTheBound) {
+  const auto objects = std::make_unique<objects::Objects>();
+  const auto near = std::make_unique<NearObjects>();
+  Random random(9);
+  for (std::size_t i = 0; i < objects::kMaxObjects; ++i) {
+    objects::Object object;
+    object.moving = i % 8 == 0;
+    object.centre_O_m[0] = random.uniform(-6, 6);
+    object.centre_O_m[1] = random.uniform(-6, 6);
+    ASSERT_TRUE(ok(object.points_O_m.resize(objects::kMaxObjectPoints)));
+    ASSERT_TRUE(ok(objects->push_back(object)));
+  }
+  near->gather(*objects, Vector2::Zero(), 10, false);
+  std::size_t points = 0;
+  double farthest_m = 0;
+  for (const objects::Object* object : near->standing()) {
+    points += object->points_O_m.size();
+    farthest_m = std::max(farthest_m, object->centre_O_m.norm());
+  }
+  EXPECT_EQ(points, NearObjects::kMaxPoints);
+  EXPECT_EQ(near->moving().size(), NearObjects::kMaxMoving);
+  std::size_t nearer = 0;
+  for (const objects::Object& object : *objects) {
+    if (!object.moving && object.centre_O_m.norm() < farthest_m - 0.25) ++nearer;
+  }
+  EXPECT_LE(nearer, near->standing().size());  // none left out but in the last ring
+}
+
 TEST(PathFollower, ChangesPathsWithoutAStepOfTheCommand) {
   const auto follower = std::make_unique<PathFollower>();
   const auto objects = std::make_unique<objects::Objects>();

@@ -99,7 +99,7 @@ TEST(GridSearch, CostsWhatAnExhaustiveSearchFindsOnEveryMap) {
   const auto search = std::make_unique<GridSearch>();
   const auto path = std::make_unique<RawPath>();
   int found = 0;
-  for (int i = 0; i < tests::samples(3000, 200); ++i) {
+  for (int i = 0; i < tests::samples(2000, 200); ++i) {
     const auto side = static_cast<std::int32_t>(20 + random.below(20));
     const Case c = random_case(random, side);
     const std::uint64_t wanted = exhaustive(c);
@@ -115,7 +115,24 @@ TEST(GridSearch, CostsWhatAnExhaustiveSearchFindsOnEveryMap) {
     ASSERT_EQ(path_cost(*c.map, *path) + rest, wanted);
     ASSERT_EQ(c.map->cell_of((*path)[0]), c.start);
   }
-  EXPECT_GT(found, tests::samples(1200, 80));
+  EXPECT_GT(found, tests::samples(800, 80));
+}
+
+TEST(Reach, HoldsWhatASearchFinds) {
+  Random random(2);
+  const auto search = std::make_unique<GridSearch>();
+  const auto path = std::make_unique<RawPath>();
+  const auto reach = std::make_unique<Reach>();
+  int found = 0;
+  for (int i = 0; i < tests::samples(300, 50); ++i) {
+    const Case c = random_case(random, 30);
+    if (c.ends.list.size() != 1 || c.map->lethal(c.start)) continue;
+    reach->flood(*c.map, c.start);
+    const SearchResult result = search->search(*c.map, c.start, c.ends, *path);
+    ASSERT_EQ(reach->contains(c.ends.list[0].cell), result.found) << "map " << i;
+    if (result.found) ++found;
+  }
+  EXPECT_GT(found, 10);
 }
 
 TEST(GridSearch, GivesThePathToTheBestCellWhenABoundIsMet) {

@@ -42,7 +42,7 @@ World forest(std::uint64_t seed, double length_m, double per_m2) {
 }
 
 TEST(Runs, CrossesForests) {
-  for (int seed = 0; seed < tests::samples(10, 2); ++seed) {
+  for (int seed = 0; seed < tests::samples(6, 2); ++seed) {
     const auto number = static_cast<std::uint64_t>(seed);
     const RunResult result = run(forest(number, 40, 0.15), options(Vector2(40, 0), number));
     EXPECT_EQ(result.state, NavigationState::kArrived) << seed << to_string(result.reason);

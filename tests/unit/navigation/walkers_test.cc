@@ -82,7 +82,7 @@ TEST(Walkers, NoneIsRunIntoWhoCouldBeAvoided) {
 }
 
 TEST(Walkers, AreAvoidedFromAllSides) {
-  const Count count = meet(test::small_robot(), from_all_sides, tests::samples(40, 3));
+  const Count count = meet(test::small_robot(), from_all_sides, tests::samples(25, 3));
   EXPECT_LE(count.avoidable, 2);  // who is out of view by the time it comes near
 }
 
