@@ -99,7 +99,7 @@ TEST(GridSearch, CostsWhatAnExhaustiveSearchFindsOnEveryMap) {
   const auto search = std::make_unique<GridSearch>();
   const auto path = std::make_unique<RawPath>();
   int found = 0;
-  for (int i = 0; i < tests::samples(2000, 200); ++i) {
+  for (int i = 0; i < tests::samples(10'000, 200); ++i) {
     const auto side = static_cast<std::int32_t>(20 + random.below(20));
     const Case c = random_case(random, side);
     const std::uint64_t wanted = exhaustive(c);
