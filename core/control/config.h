@@ -86,8 +86,8 @@ struct SwingConfig {
     visit.real("clearance_m", self.clearance_m, {0.0, 0.3}, "above the highest ground on the way");
     visit.real("search_speed_m_s", self.search_speed_m_s, {0.0, 2.0}, "downwards, no ground found");
     visit.real("search_depth_m", self.search_depth_m, {0.0, 0.5}, "below the expected landing");
-    visit.reals("kp_Nm_rad", self.kp_Nm_rad, {0.0, 500.0}, "abad, hip, knee");
-    visit.reals("kd_Nm_s_rad", self.kd_Nm_s_rad, {0.0, 20.0}, "abad, hip, knee");
+    visit.reals("kp_Nm_rad", self.kp_Nm_rad, {0.0, 5000.0}, "abad, hip, knee");
+    visit.reals("kd_Nm_s_rad", self.kd_Nm_s_rad, {0.0, 500.0}, "abad, hip, knee");
   }
 };
 
@@ -195,8 +195,8 @@ struct StandUpConfig {
     visit.real("fold_s", self.fold_s, {0.1, 20.0}, "to the folded pose");
     visit.real("rise_s", self.rise_s, {0.1, 20.0}, "from folded to standing");
     visit.reals("folded_rad", self.folded_rad, {-6.3, 6.3}, "abad, hip, knee");
-    visit.real("kp_Nm_rad", self.kp_Nm_rad, {0.0, 500.0}, "joint stiffness");
-    visit.real("kd_Nm_s_rad", self.kd_Nm_s_rad, {0.0, 20.0}, "joint damping");
+    visit.real("kp_Nm_rad", self.kp_Nm_rad, {0.0, 5000.0}, "joint stiffness");
+    visit.real("kd_Nm_s_rad", self.kd_Nm_s_rad, {0.0, 500.0}, "joint damping");
   }
 };
 
@@ -237,9 +237,9 @@ struct RecoveryConfig {
     visit.real("quiet_rad_s", self.quiet_rad_s, {0.01, 5.0}, "slower: lying still");
     visit.real("quiet_s", self.quiet_s, {0.02, 5.0}, "for so long");
     visit.real("speed_rad_s", self.speed_rad_s, {0.1, 30.0}, "of the joint with the longest way");
-    visit.real("kp_Nm_rad", self.kp_Nm_rad, {0.0, 500.0}, "joint stiffness");
-    visit.real("kd_Nm_s_rad", self.kd_Nm_s_rad, {0.0, 20.0}, "joint damping");
-    visit.real("limp_damping_Nm_s_rad", self.limp_damping_Nm_s_rad, {0.0, 20.0}, "while limp");
+    visit.real("kp_Nm_rad", self.kp_Nm_rad, {0.0, 5000.0}, "joint stiffness");
+    visit.real("kd_Nm_s_rad", self.kd_Nm_s_rad, {0.0, 500.0}, "joint damping");
+    visit.real("limp_damping_Nm_s_rad", self.limp_damping_Nm_s_rad, {0.0, 500.0}, "while limp");
     visit.integer("max_rolls", self.max_rolls, {0, 100}, "then it gives up");
     visit.list("roll", self.roll);
   }

@@ -42,8 +42,8 @@ struct WholeBodyConfig {
     visit.real("max_residual_N", self.max_residual_N, {1e-6, 100.0}, "else reference forces");
     visit.real("max_joint_step_rad", self.max_joint_step_rad, {0.01, 3.0},
                "from the present angle");
-    visit.reals("joint_kp_Nm_rad", self.joint_kp_Nm_rad, {0.0, 500.0}, "abad, hip, knee");
-    visit.reals("joint_kd_Nm_s_rad", self.joint_kd_Nm_s_rad, {0.0, 20.0}, "abad, hip, knee");
+    visit.reals("joint_kp_Nm_rad", self.joint_kp_Nm_rad, {0.0, 5000.0}, "abad, hip, knee");
+    visit.reals("joint_kd_Nm_s_rad", self.joint_kd_Nm_s_rad, {0.0, 500.0}, "abad, hip, knee");
   }
 };
 

@@ -99,9 +99,9 @@ struct JointWiring {
     visit.real("offset_rad", self.offset_rad, {-12.6, 12.6}, "at the drive output");
     visit.real("position_range_rad", self.position_range_rad, {1.0, 200.0}, "+- on the wire");
     visit.real("velocity_range_rad_s", self.velocity_range_rad_s, {1.0, 200.0}, "+- on the wire");
-    visit.real("kp_max_Nm_rad", self.kp_max_Nm_rad, {1.0, 1000.0}, "0 .. this on the wire");
-    visit.real("kd_max_Nm_s_rad", self.kd_max_Nm_s_rad, {0.1, 100.0}, "0 .. this on the wire");
-    visit.real("torque_range_Nm", self.torque_range_Nm, {0.1, 500.0}, "+- on the wire");
+    visit.real("kp_max_Nm_rad", self.kp_max_Nm_rad, {1.0, 10000.0}, "0 .. this on the wire");
+    visit.real("kd_max_Nm_s_rad", self.kd_max_Nm_s_rad, {0.1, 500.0}, "0 .. this on the wire");
+    visit.real("torque_range_Nm", self.torque_range_Nm, {0.1, 2000.0}, "+- on the wire");
   }
 };
 
