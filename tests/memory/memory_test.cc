@@ -132,6 +132,7 @@ TEST(TickMemory, ATickWithDepthAndRecordUsesNoHeapAndFaultsNoPage) {
   const ScratchFolder folder;
   testing::FakeBoard fake;
   fake.can.keep_sent = false;
+  fake.gait.keep_sent = false;
   RecordWriter writer;
   RecordWriterOptions options;
   options.chunk_bytes = std::size_t{1} << 20;

@@ -160,11 +160,12 @@ class FakeLidar final : public hal::LidarPort {
 class FakeGait final : public FakeQueue<hal::GaitPort, hal::GaitSample> {
  public:
   std::vector<hal::GaitCommand> sent;
+  bool keep_sent = true;
   bool refuse = false;
 
  private:
   Status do_send(const hal::GaitCommand& command) override {
-    sent.push_back(command);
+    if (keep_sent) sent.push_back(command);
     return refuse ? Status::kUnavailable : Status::kOk;
   }
   Status do_receive(hal::GaitSample& out) override {
