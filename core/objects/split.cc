@@ -85,17 +85,20 @@ std::uint8_t part_of(const Vector2& p, const Claims& claims, const ObjectMemory&
 }
 
 void take(const Piece& from, const Parts& parts, std::size_t part, Piece& to) {
+  // By pointer: `to` may be `from`, whose points then close up.
+  const Vector2* const points_O_m = from.points_O_m.begin();
+  const std::size_t count = from.points_O_m.size();
   std::size_t kept = 0;
-  for (std::size_t k = 0; k < from.points_O_m.size(); ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     if (parts[k] != part) continue;
-    const Vector2 p = from.points_O_m[k];
+    const Vector2 p = points_O_m[k];
     if (kept == to.points_O_m.size()) static_cast<void>(to.points_O_m.resize(kept + 1));
-    to.points_O_m[kept++] = p;
+    to.points_O_m.begin()[kept++] = p;
   }
   static_cast<void>(to.points_O_m.resize(kept));
   Vector2 sum = Vector2::Zero();
-  to.low_O_m = to.points_O_m[0];
-  to.high_O_m = to.points_O_m[0];
+  to.low_O_m = *to.points_O_m.begin();
+  to.high_O_m = to.low_O_m;
   for (const Vector2& p : to.points_O_m) {
     sum += p;
     to.low_O_m = to.low_O_m.cwiseMin(p);
@@ -115,8 +118,9 @@ std::size_t split_piece(Pieces& pieces, std::size_t index, TimeNs now, const Obj
   const std::size_t count = whole.points_O_m.size();
   Parts parts{};
   Sizes sizes{};
+  const Vector2* const points_O_m = whole.points_O_m.begin();
   for (std::size_t k = 0; k < count; ++k) {
-    parts[k] = part_of(whole.points_O_m[k], claims, memory);
+    parts[k] = part_of(points_O_m[k], claims, memory);
     ++sizes[parts[k]];
   }
   std::size_t first = 0;

@@ -83,9 +83,14 @@ Status Executive::start(const ExecutiveSetup& setup) {
     const bool slow = i < setup.tasks.size() && setup.tasks[i].latency_ticks > 0;
     if (slow) states_[i].slow_index = slow_index++;
   }
+  clear_tick();
+  return Status::kOk;
+}
+
+// On its own: the two temporaries are off the stack again before a port or a task is called.
+[[gnu::noinline]] void Executive::clear_tick() {
   inputs_ = {};
   outputs_ = {};
-  return Status::kOk;
 }
 
 Status Executive::run_tick() {

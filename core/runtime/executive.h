@@ -148,6 +148,7 @@ class Executive {
                            Status (*encode)(const Frame&, std::span<std::uint8_t>, std::size_t&),
                            hal::RecordChannel channel, std::uint64_t& invalid);
 
+  void clear_tick();
   void run_tick_body(Status woke);
   void latch(Status woke);
   void latch_can();

@@ -26,7 +26,13 @@ surefoot::autonomy::Autonomy::publish_localisation(
 surefoot::autonomy::MapTask::run(
 surefoot::autonomy::MapTask::publish(
 surefoot::autonomy::TerrainTask::run(
-surefoot::autonomy::TerrainTask::publish('
+surefoot::autonomy::TerrainTask::publish(
+surefoot::autonomy::Autonomy::begin_objects(
+surefoot::autonomy::ObjectTask::run(
+surefoot::autonomy::ObjectTask::publish(
+surefoot::autonomy::Autonomy::begin_planning(
+surefoot::navigation::Navigator::run(
+surefoot::navigation::Navigator::publish('
 readonly OTHERS='surefoot::runtime::Executive::run_tick(
 surefoot::autonomy::Autonomy::reset(
 surefoot::runtime::Executive::start('
