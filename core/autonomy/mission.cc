@@ -25,7 +25,7 @@ double Mission::Path::along_m(const estimation::RobotState& state) const {
 
 double Mission::Path::left_m(const estimation::RobotState& state) const {
   const Vector2 off = state.p_OB_m.head<2>() - from_O_m;
-  return direction_O[0] * off[1] - direction_O[1] * off[0];
+  return math::cross(direction_O, off);
 }
 
 double Mission::Path::to_go_m(const estimation::RobotState& state) const {

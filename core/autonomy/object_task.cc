@@ -82,10 +82,7 @@ void ObjectTask::run() {
 }
 
 void ObjectTask::publish() {
-  published_.clear();
-  for (const objects::Object& object : map_.objects()) {
-    static_cast<void>(published_.push_back(object));  // the same capacity
-  }
+  objects::assign(published_, map_.objects());
   digest_ = digest_of(published_);
 }
 

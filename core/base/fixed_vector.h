@@ -35,6 +35,11 @@ class FixedVector {
     return Status::kOk;
   }
   constexpr void clear() { size_ = 0; }
+  // As `=`, but touches only what is in use.
+  constexpr void assign(const FixedVector& from) {
+    for (std::size_t i = 0; i < from.size_; ++i) items_[i] = from.items_[i];
+    size_ = from.size_;
+  }
 
   constexpr T& operator[](std::size_t i) {
     SUREFOOT_ASSERT(i < size_);

@@ -5,6 +5,8 @@
 // must be finite unless said otherwise; a NaN argument is a programmer's error.
 #pragma once
 
+#include <cstdint>
+
 namespace surefoot::math {
 
 inline constexpr double kPi = 3.14159265358979323846;
@@ -47,6 +49,12 @@ constexpr double magnitude(double x) { return x < 0 ? -x : x; }
 template <class T>
 constexpr T square(T value) {
   return value * value;
+}
+
+// The largest whole number not above the value; |value| < 2^31.
+constexpr std::int32_t floor_of(double value) {
+  const auto whole = static_cast<std::int32_t>(value);
+  return static_cast<double>(whole) > value ? whole - 1 : whole;
 }
 
 // Finite: neither infinite nor NaN, without calling libm.

@@ -1,5 +1,7 @@
 #include "core/navigation/cost_map.h"
 
+#include <algorithm>
+
 #include "core/math/elementary.h"
 
 namespace surefoot::navigation {
@@ -19,9 +21,6 @@ Lanes load(const std::uint16_t* from) {
   return lanes;
 }
 
-std::int32_t least(std::int32_t a, std::int32_t b) { return a < b ? a : b; }
-std::int32_t most(std::int32_t a, std::int32_t b) { return a > b ? a : b; }
-
 }  // namespace
 
 void CostMap::resize(std::int32_t side_cells, double cell_m) {
@@ -34,9 +33,9 @@ void CostMap::reset(const NavigationConfig& config) {
   resize(static_cast<std::int32_t>(config.map.side_cells), config.map.cell_m);
   lethal_radius_m_ = config.half_width_m + config.map.clearance_m;
   edge_cost_ = config.map.edge_cost;
-  fall_off_reach_m_ = larger(config.map.fall_off_reach_m, lethal_radius_m_ + cell_m_);
+  fall_off_reach_m_ = std::max(config.map.fall_off_reach_m, lethal_radius_m_ + cell_m_);
   walker_horizon_s_ = config.map.walker_horizon_s;
-  reach_ = least(kMaxReach, floor_of(fall_off_reach_m_ / cell_m_) + 1);
+  reach_ = std::min(kMaxReach, math::floor_of(fall_off_reach_m_ / cell_m_) + 1);
   const std::int32_t side = 2 * reach_ + 1;
   for (std::int32_t place = 0; place < kPlaces * kPlaces; ++place) {
     const Vector2 p_m((place % kPlaces + 0.5) / kPlaces * cell_m_,
@@ -55,40 +54,45 @@ std::uint16_t CostMap::kernel_cost(double distance_m) const {
   if (distance_m > fall_off_reach_m_) return kFreeCost;
   const double ratio = lethal_radius_m_ / distance_m;
   const double cost = kFreeCost * (1.0 + edge_cost_ * ratio * ratio * ratio);
-  return static_cast<std::uint16_t>(smaller(cost, kMaxCost));
+  return static_cast<std::uint16_t>(std::min(cost, static_cast<double>(kMaxCost)));
 }
 
 void CostMap::clear(const Vector2& centre_O_m) {
-  origin_ = {floor_of(centre_O_m[0] / cell_m_) - side_ / 2,
-             floor_of(centre_O_m[1] / cell_m_) - side_ / 2};
+  origin_ = {math::floor_of(centre_O_m[0] / cell_m_) - side_ / 2,
+             math::floor_of(centre_O_m[1] / cell_m_) - side_ / 2};
   const auto cells = static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_);
   for (std::size_t i = 0; i < cells; ++i) costs_[i] = kFreeCost;
   for (std::size_t i = 0; i < cells; ++i) stamped_[i] = 0;
 }
 
 Cell CostMap::cell_of(const Vector2& p_O_m) const {
-  return {floor_of(p_O_m[0] / cell_m_) - origin_.x, floor_of(p_O_m[1] / cell_m_) - origin_.y};
+  return {math::floor_of(p_O_m[0] / cell_m_) - origin_.x,
+          math::floor_of(p_O_m[1] / cell_m_) - origin_.y};
 }
 
 Vector2 CostMap::centre_of_O_m(Cell cell) const {
   return {(cell.x + origin_.x + 0.5) * cell_m_, (cell.y + origin_.y + 0.5) * cell_m_};
 }
 
+CostMap::Place CostMap::place_of(const Vector2& p_O_m) const {
+  const Vector2 in_cells = p_O_m / cell_m_;
+  const Cell world{math::floor_of(in_cells[0]), math::floor_of(in_cells[1])};
+  return {{world.x - origin_.x, world.y - origin_.y},
+          math::floor_of((in_cells[1] - world.y) * kPlaces) * kPlaces +
+              math::floor_of((in_cells[0] - world.x) * kPlaces)};
+}
+
 // The dearer of map and kernel for the cells in reach of a point; the kernel up to `most_cost`.
 void CostMap::spread(const Vector2& p_O_m, std::uint16_t most_cost) {
-  const Vector2 in_cells = p_O_m / cell_m_;
-  const Cell world{floor_of(in_cells[0]), floor_of(in_cells[1])};
-  const Cell at{world.x - origin_.x, world.y - origin_.y};
+  const auto [at, place] = place_of(p_O_m);
   if (at.x < -reach_ || at.y < -reach_ || at.x >= side_ + reach_ || at.y >= side_ + reach_) return;
-  const std::int32_t place = floor_of((in_cells[1] - world.y) * kPlaces) * kPlaces +
-                             floor_of((in_cells[0] - world.x) * kPlaces);
   const Lanes all_most = Lanes{} + most_cost;
   const std::int32_t kernel_side = 2 * reach_ + 1;
   const std::uint16_t* kernel = kernels_[static_cast<std::size_t>(place)].data();
-  const std::int32_t x0 = most(at.x - reach_, 0);
-  const std::int32_t x1 = least(at.x + reach_, side_ - 1);
-  const std::int32_t y1 = least(at.y + reach_, side_ - 1);
-  for (std::int32_t y = most(at.y - reach_, 0); y <= y1; ++y) {
+  const std::int32_t x0 = std::max(at.x - reach_, 0);
+  const std::int32_t x1 = std::min(at.x + reach_, side_ - 1);
+  const std::int32_t y1 = std::min(at.y + reach_, side_ - 1);
+  for (std::int32_t y = std::max(at.y - reach_, 0); y <= y1; ++y) {
     const std::uint16_t* from = kernel + (y - at.y + reach_) * kernel_side + (x0 - at.x + reach_);
     std::uint16_t* to = costs_.data() + y * side_ + x0;
     const std::int32_t count = x1 - x0 + 1;
@@ -108,12 +112,8 @@ void CostMap::spread(const Vector2& p_O_m, std::uint16_t most_cost) {
 }
 
 void CostMap::stamp(const Vector2& p_O_m) {
-  const Vector2 in_cells = p_O_m / cell_m_;
-  const Cell world{floor_of(in_cells[0]), floor_of(in_cells[1])};
-  const Cell at{world.x - origin_.x, world.y - origin_.y};
+  const auto [at, place] = place_of(p_O_m);
   if (inside(at)) {
-    const std::int32_t place = floor_of((in_cells[1] - world.y) * kPlaces) * kPlaces +
-                               floor_of((in_cells[0] - world.x) * kPlaces);
     const auto bit = static_cast<std::uint16_t>(1u << static_cast<std::uint32_t>(place));
     std::uint16_t& stamped = stamped_[index(at)];
     if ((stamped & bit) != 0) return;
@@ -148,7 +148,7 @@ void CostMap::add_walkers(const objects::Objects& objects, const Vector2& robot_
 bool CostMap::passable(const Vector2& from_O_m, const Vector2& to_O_m) const {
   const Vector2 way_m = to_O_m - from_O_m;
   const double length_m = math::sqrt(way_m.squaredNorm());
-  const std::int32_t steps = floor_of(2.0 * length_m / cell_m_) + 1;
+  const std::int32_t steps = math::floor_of(2.0 * length_m / cell_m_) + 1;
   for (std::int32_t i = 0; i <= steps; ++i) {
     if (lethal_at(from_O_m + way_m * (static_cast<double>(i) / steps))) return false;
   }

@@ -85,6 +85,12 @@ class CostMap {
   static constexpr std::int32_t kPlaces = 4;     // per side of a cell
   static constexpr std::int32_t kKernelSide = 2 * kMaxReach + 1;
 
+  struct Place {
+    Cell at;                // may lie outside
+    std::int32_t part = 0;  // of the cell: which of its kPlaces x kPlaces
+  };
+
+  Place place_of(const Vector2& p_O_m) const;
   void stamp(const Vector2& p_O_m);
   void spread(const Vector2& p_O_m, std::uint16_t most_cost);
   std::uint16_t kernel_cost(double distance_m) const;

@@ -10,7 +10,7 @@ void goal_ends(const CostMap& map, const Vector2& goal_O_m, double moved_m, Ends
   if (!map.inside(ends.towards)) return;
   Cell cell = ends.towards;
   if (map.lethal(cell)) {
-    const std::int32_t rings = floor_of(moved_m / map.cell_m()) + 2;
+    const std::int32_t rings = math::floor_of(moved_m / map.cell_m()) + 2;
     if (!map.nearest_free(ends.towards, rings, cell)) return;
     const Vector2 moved = map.centre_of_O_m(cell) - goal_O_m;
     if (moved.squaredNorm() > math::square(moved_m + map.cell_m())) return;

@@ -13,7 +13,7 @@ void GroundMemory::reset(const NavigationConfig& config) {
 }
 
 Cell GroundMemory::cell_of(const Vector2& p_O_m) const {
-  return {floor_of(p_O_m[0] / cell_m_), floor_of(p_O_m[1] / cell_m_)};
+  return {math::floor_of(p_O_m[0] / cell_m_), math::floor_of(p_O_m[1] / cell_m_)};
 }
 
 // Cells that come into the square are unknown.
@@ -52,9 +52,8 @@ Ground GroundMemory::ground(Cell cell) const {
   const std::uint8_t known = cells_[index(cell)];
   const std::uint8_t lethal = known & kLethalBits;
   if (lethal == kLethalBits) return Ground::kBlocked;
-  static_assert(kFinePerWay == 2, "the table counts the bits of 0 to 15");
-  constexpr std::array<std::uint8_t, 16> kCount{0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
-  if (kCount[lethal] >= 2) return Ground::kTight;
+  // Without the lowest bit, is there another? std::popcount would call into the run-time library.
+  if ((lethal & (lethal - 1)) != 0) return Ground::kTight;
   return known == 0 ? Ground::kUnknown : Ground::kFree;
 }
 
@@ -73,11 +72,13 @@ void GroundMemory::block(std::uint8_t& known, std::uint8_t lethal) {
 void GroundMemory::take(CostMap& map) {
   const Cell origin = map.origin();
   const auto up = [](std::int32_t fine) {
-    return floor_of((fine + kFinePerWay - 1.0) / kFinePerWay);
+    return math::floor_of((fine + kFinePerWay - 1.0) / kFinePerWay);
   };
   const Cell first{up(origin.x), up(origin.y)};
-  const std::int32_t last_x = floor_of(static_cast<double>(origin.x + map.side()) / kFinePerWay);
-  const std::int32_t last_y = floor_of(static_cast<double>(origin.y + map.side()) / kFinePerWay);
+  const std::int32_t last_x =
+      math::floor_of(static_cast<double>(origin.x + map.side()) / kFinePerWay);
+  const std::int32_t last_y =
+      math::floor_of(static_cast<double>(origin.y + map.side()) / kFinePerWay);
   for (std::int32_t y = first.y; y < last_y; ++y) {
     for (std::int32_t x = first.x; x < last_x; ++x) {
       const Cell corner{x * kFinePerWay - origin.x, y * kFinePerWay - origin.y};
@@ -98,9 +99,9 @@ void GroundMemory::take(CostMap& map) {
 // holds; that is taken again afterwards.
 void GroundMemory::look(const CostMap& map, const RobotPose& robot) {
   const double step_m = 0.5 * cell_m_;
-  const std::int32_t steps = floor_of(way_.sight_range_m / step_m);
-  const std::int32_t trusted = floor_of(way_.trust_range_m / step_m);
-  const std::int32_t own = floor_of(map.lethal_radius_m() / step_m) + 1;
+  const std::int32_t steps = math::floor_of(way_.sight_range_m / step_m);
+  const std::int32_t trusted = math::floor_of(way_.trust_range_m / step_m);
+  const std::int32_t own = math::floor_of(map.lethal_radius_m() / step_m) + 1;
   for (std::int32_t ray = 0; ray < kRays; ++ray) {
     const double off_rad = way_.sight_half_angle_rad * (2.0 * ray / (kRays - 1) - 1.0);
     const math::SinCos to = math::sin_cos(robot.yaw_rad + off_rad);

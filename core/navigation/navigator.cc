@@ -21,23 +21,6 @@ NavigationReason reason_of(SpeedReason reason) {
   return NavigationReason::kNone;
 }
 
-void copy(const objects::Objects& from, objects::Objects& to) {
-  static_cast<void>(to.resize(from.size()));
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    const objects::Object& source = from[i];
-    objects::Object& target = to[i];
-    target.id = source.id;
-    target.kind = source.kind;
-    target.moving = source.moving;
-    target.first_seen = source.first_seen;
-    target.last_seen = source.last_seen;
-    target.tracked_s = source.tracked_s;
-    target.centre_O_m = source.centre_O_m;
-    target.velocity_O_m_s = source.velocity_O_m_s;
-    copy_used(source.points_O_m, target.points_O_m);
-  }
-}
-
 }  // namespace
 
 Status Navigator::reset(const NavigationConfig& config) {
@@ -100,7 +83,7 @@ bool Navigator::release(const objects::Objects& objects, const RobotPose& robot,
   input_.robot = robot;
   input_.past_O_m = past_O_m(robot, stamp);
   input_.stamp = stamp;
-  copy(objects, input_.objects);
+  objects::assign(input_.objects, objects);
   return true;
 }
 

@@ -1,5 +1,7 @@
 #include "core/navigation/near_objects.h"
 
+#include <algorithm>
+
 #include "core/math/elementary.h"
 
 namespace surefoot::navigation {
@@ -15,7 +17,7 @@ void NearObjects::gather(const objects::Objects& objects, const Vector2& p_O_m,
   farthest_ = 0;
   points_in_ring_.fill(0);
   const double reach_m =
-      smaller(points_reach_m + kObjectReach_m, kRing_m * static_cast<double>(kRings));
+      std::min(points_reach_m + kObjectReach_m, kRing_m * static_cast<double>(kRings));
   const double reach2 = math::square(reach_m);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const objects::Object& object = objects[i];
@@ -27,7 +29,7 @@ void NearObjects::gather(const objects::Objects& objects, const Vector2& p_O_m,
       continue;
     }
     if (!(far2 < reach2)) continue;
-    const double rings = smaller(math::sqrt(far2) / kRing_m, static_cast<double>(kRings - 1));
+    const double rings = std::min(math::sqrt(far2) / kRing_m, static_cast<double>(kRings - 1));
     const auto ring = static_cast<std::uint8_t>(rings);
     ring_of_[i] = ring;
     points_in_ring_[ring] =

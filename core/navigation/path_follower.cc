@@ -1,5 +1,7 @@
 #include "core/navigation/path_follower.h"
 
+#include <algorithm>
+
 #include "core/math/elementary.h"
 
 namespace surefoot::navigation {
@@ -13,8 +15,6 @@ constexpr double kDiscStep_m = 0.16;  // between discs of the corridor
 double turned_towards(double target, double from, double step) {
   return from + math::clamp(target - from, -step, step);
 }
-
-constexpr std::uint8_t smaller_of(std::uint8_t a, std::uint8_t b) { return a < b ? a : b; }
 
 // Up with one acceleration, down with another.
 double speed_towards(double target, double from, double up, double down) {
@@ -61,9 +61,9 @@ void PathFollower::locate(const RobotPose& robot) {
     place_.at_m = path[i].along_m + (path[i + 1].along_m - path[i].along_m) * share;
     place_.p_O_m = p_O_m;
   }
-  const double lead_m = larger(0.0, command_.forward_m_s) * config_.follow.reaction_s;
+  const double lead_m = std::max(0.0, command_.forward_m_s) * config_.follow.reaction_s;
   place_.ahead = path[sample_at(place_.at_m + lead_m)];
-  off_path_m_ = cross(path[place_.sample].tangent_O, robot.p_O_m - place_.p_O_m);
+  off_path_m_ = math::cross(path[place_.sample].tangent_O, robot.p_O_m - place_.p_O_m);
   to_end_m_ = path.back().along_m - place_.at_m;
 }
 
@@ -79,14 +79,14 @@ double PathFollower::curve_limit_m_s() const {
   const double reach_m = limit2 / (2.0 * follow.braking_m_s2) + follow.cruise_m_s;
   for (std::size_t i = place_.sample; i < path_->size(); ++i) {
     const PathPoint& point = (*path_)[i];
-    const double way_m = larger(0.0, point.along_m - place_.at_m);
+    const double way_m = std::max(0.0, point.along_m - place_.at_m);
     if (way_m > reach_m) break;
     const double bend = math::magnitude(point.curvature_1_m);
     if (bend < 1e-3) continue;
     const double by_side = follow.side_acceleration_m_s2 / bend;
     // A share of the yaw rate is left for corrections.
     const double by_yaw = math::square(0.7 * follow.max_yaw_rate_rad_s / bend);
-    limit2 = smaller(limit2, smaller(by_side, by_yaw) + 2.0 * follow.braking_m_s2 * way_m);
+    limit2 = std::min(limit2, std::min(by_side, by_yaw) + 2.0 * follow.braking_m_s2 * way_m);
   }
   return math::sqrt(limit2);
 }
@@ -99,15 +99,15 @@ void PathFollower::draw_disc(const Vector2& p_O_m, std::uint8_t number) {
   const double reach = radius_m / kGridCell_m + 0.71;
   const Vector2 at = (p_O_m - corridor_corner_O_m_) / kGridCell_m;
   const auto bound = [](std::int32_t i) { return math::clamp(i, 0, kGridSide - 1); };
-  const std::int32_t y1 = bound(floor_of(at[1] + reach));
-  for (std::int32_t y = bound(floor_of(at[1] - reach)); y <= y1; ++y) {
+  const std::int32_t y1 = bound(math::floor_of(at[1] + reach));
+  for (std::int32_t y = bound(math::floor_of(at[1] - reach)); y <= y1; ++y) {
     const double width2 = reach * reach - math::square(y + 0.5 - at[1]);
     if (width2 <= 0) continue;
     const double width = math::sqrt(width2) - 0.5;
     std::uint8_t* row = corridor_.data() + y * kGridSide;
-    const std::int32_t x1 = bound(floor_of(at[0] + width));
-    for (std::int32_t x = bound(floor_of(at[0] - width)); x <= x1; ++x) {
-      row[x] = smaller_of(row[x], number);
+    const std::int32_t x1 = bound(math::floor_of(at[0] + width));
+    for (std::int32_t x = bound(math::floor_of(at[0] - width)); x <= x1; ++x) {
+      row[x] = std::min(row[x], number);
     }
   }
 }
@@ -122,20 +122,20 @@ void PathFollower::draw_corridor(const RobotPose& robot) {
   const double wanted_m = math::square(follow.cruise_m_s) / (2.0 * follow.braking_m_s2) +
                           follow.cruise_m_s * follow.reaction_s + config_.half_length_m + 0.3;
   const double radius_m = config_.half_width_m + config_.map.clearance_m;
-  const double end_m = smaller(wanted_m, 0.5 * side_m - radius_m);
+  const double end_m = std::min(wanted_m, 0.5 * side_m - radius_m);
   const Vector2 off_m = robot.p_O_m - place_.p_O_m;
   discs_ = 0;
   std::size_t i = place_.sample;
   for (double way_m = 0; way_m <= end_m && discs_ < kClear; way_m += kDiscStep_m) {
     if (way_m > to_end_m_ + kDiscStep_m) break;
-    const double along_m = smaller(place_.at_m + way_m, path.back().along_m);
+    const double along_m = std::min(place_.at_m + way_m, path.back().along_m);
     while (i + 2 < path.size() && path[i + 1].along_m < along_m) ++i;
-    const double spacing_m = larger(1e-9, path[i + 1].along_m - path[i].along_m);
+    const double spacing_m = std::max(1e-9, path[i + 1].along_m - path[i].along_m);
     const double share = math::clamp((along_m - path[i].along_m) / spacing_m, 0.0, 1.0);
     Disc& disc = corridor_O_m_[discs_];
     disc.way_m = way_m;
     disc.p_O_m = path[i].p_O_m + (path[i + 1].p_O_m - path[i].p_O_m) * share +
-                 off_m * larger(0.0, 1.0 - way_m);
+                 off_m * std::max(0.0, 1.0 - way_m);
     disc.to_O = path[i].tangent_O;
     draw_disc(disc.p_O_m, static_cast<std::uint8_t>(discs_));
     ++discs_;
@@ -151,12 +151,12 @@ void PathFollower::draw_corridor(const RobotPose& robot) {
 double PathFollower::way_to_touch_m(const Vector2& p_O_m, std::uint8_t number) const {
   const Disc& disc = corridor_O_m_[number];
   const Vector2 to_m = p_O_m - disc.p_O_m;
-  const double aside_m = cross(disc.to_O, to_m);
+  const double aside_m = math::cross(disc.to_O, to_m);
   const double ahead_m = to_m.dot(disc.to_O);
   const double room2 = math::square(corridor_radius_m()) - aside_m * aside_m;
   const bool passed = ahead_m < 0 && ahead_m * ahead_m >= room2;
   if (room2 <= 0 || passed) return 2.0 * config_.way.sight_range_m;
-  return larger(0.0, disc.way_m + ahead_m - math::sqrt(room2));
+  return std::max(0.0, disc.way_m + ahead_m - math::sqrt(room2));
 }
 
 void PathFollower::measure_free_way(const RobotPose& robot, const objects::Objects& objects) {
@@ -167,7 +167,7 @@ void PathFollower::measure_free_way(const RobotPose& robot, const objects::Objec
                config_.follow.walker_horizon_s <= 0);
   const double beside2 = 1.5 * math::square(corridor_radius_m());
   const Vector2 to_O = (*path_)[sample_at(place_.at_m + 0.3)].p_O_m - robot.p_O_m;
-  const double front_m = larger(0.0, config_.half_length_m - config_.half_width_m) + kStopGap_m;
+  const double front_m = std::max(0.0, config_.half_length_m - config_.half_width_m) + kStopGap_m;
   double touch_m = config_.way.sight_range_m + front_m;
   for (const objects::Object* object : near_.standing()) {
     for (const Vector2& p_O_m : object->points_O_m) {
@@ -180,10 +180,10 @@ void PathFollower::measure_free_way(const RobotPose& robot, const objects::Objec
       // Too near already: no obstacle for a way that leads off.
       const Vector2 from_robot = p_O_m - robot.p_O_m;
       if (from_robot.squaredNorm() < beside2 && from_robot.dot(to_O) <= 0) continue;
-      touch_m = smaller(touch_m, way_to_touch_m(p_O_m, number));
+      touch_m = std::min(touch_m, way_to_touch_m(p_O_m, number));
     }
   }
-  free_m_ = larger(0.0, touch_m - front_m);
+  free_m_ = std::max(0.0, touch_m - front_m);
 }
 
 double PathFollower::speed_limit_m_s() {
@@ -201,7 +201,7 @@ double PathFollower::speed_limit_m_s() {
     reason_ = why;
   };
   lower(curve_limit_m_s(), SpeedReason::kCurve);
-  lower(larger(kCreep_m_s, within(to_end_m_)), SpeedReason::kEnd);
+  lower(std::max(kCreep_m_s, within(to_end_m_)), SpeedReason::kEnd);
   lower(within(free_m_), SpeedReason::kBlocked);
   return limit;
 }
@@ -219,12 +219,12 @@ VelocityCommand PathFollower::near_command(const RobotPose& robot, double speed_
   if (share == 0) reason_ = SpeedReason::kTurning;
   const double side =
       math::clamp(-follow.side_gain_1_s * off_path_m_, -follow.max_left_m_s, follow.max_left_m_s);
-  const double side_share = smaller(1.0, speed_m_s / (0.25 * follow.cruise_m_s));
+  const double side_share = std::min(1.0, speed_m_s / (0.25 * follow.cruise_m_s));
   const Vector2 v_O =
-      tangent * (speed_m_s * share) + left_of(tangent) * (side * share * side_share);
+      tangent * (speed_m_s * share) + math::left_of(tangent) * (side * share * side_share);
   const math::SinCos yaw = math::sin_cos(robot.yaw_rad);
   const Vector2 heading(yaw.cos, yaw.sin);
-  return {v_O.dot(heading), v_O.dot(left_of(heading)),
+  return {v_O.dot(heading), v_O.dot(math::left_of(heading)),
           follow.yaw_gain_1_s * error + place_.ahead.curvature_1_m * speed_m_s * share};
 }
 
@@ -239,7 +239,7 @@ VelocityCommand PathFollower::far_command(const RobotPose& robot, double speed_m
 VelocityCommand PathFollower::steer(const RobotPose& robot, double speed_m_s) {
   const FollowConfig& follow = config_.follow;
   const double off_m = math::sqrt((robot.p_O_m - place_.p_O_m).squaredNorm());
-  const double band_m = larger(1e-3, follow.far_m - follow.near_m);
+  const double band_m = std::max(1e-3, follow.far_m - follow.near_m);
   const double far = math::clamp((off_m - follow.near_m) / band_m, 0.0, 1.0);
   const VelocityCommand a = near_command(robot, speed_m_s);
   const VelocityCommand b = far_command(robot, speed_m_s);
@@ -255,7 +255,7 @@ VelocityCommand PathFollower::limited(const VelocityCommand& wanted, double dt_s
   const double yaw =
       math::clamp(wanted.yaw_rate_rad_s, -follow.max_yaw_rate_rad_s, follow.max_yaw_rate_rad_s);
   const double up = follow.acceleration_m_s2 * dt_s;
-  const double down = larger(up, follow.braking_m_s2 * dt_s);
+  const double down = std::max(up, follow.braking_m_s2 * dt_s);
   return {speed_towards(forward, command_.forward_m_s, up, down),
           speed_towards(left, command_.left_m_s, up, down),
           turned_towards(yaw, command_.yaw_rate_rad_s, follow.yaw_acceleration_rad_s2 * dt_s)};
@@ -288,7 +288,7 @@ VelocityCommand PathFollower::follow(const RobotPose& robot, const objects::Obje
     const math::SinCos yaw = math::sin_cos(robot.yaw_rad);
     const Vector2 heading(yaw.cos, yaw.sin);
     wanted.forward_m_s = evasion.velocity_O_m_s.dot(heading);
-    wanted.left_m_s = evasion.velocity_O_m_s.dot(left_of(heading));
+    wanted.left_m_s = evasion.velocity_O_m_s.dot(math::left_of(heading));
     reason_ = SpeedReason::kAside;
   } else if (path_ != nullptr) {
     if (evasion.share < 1) reason_ = SpeedReason::kWalker;

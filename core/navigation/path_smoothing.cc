@@ -39,7 +39,7 @@ void PathSmoothing::fit(double wavelength_m) {
 void PathSmoothing::sample(Path& path) const {
   path.clear();
   const double length_m = spline_.last_x();
-  const std::int32_t steps = floor_of(length_m / config_.sample_m) + 1;
+  const std::int32_t steps = math::floor_of(length_m / config_.sample_m) + 1;
   std::size_t interval = 0;
   double along_m = 0;
   for (std::int32_t i = 0; i <= steps; ++i) {
@@ -51,7 +51,7 @@ void PathSmoothing::sample(Path& path) const {
     const double slope = math::sqrt(sample.slope.squaredNorm());
     if (slope > 1e-6) {
       point.tangent_O = sample.slope / slope;
-      point.curvature_1_m = cross(sample.slope, sample.bend) / (slope * slope * slope);
+      point.curvature_1_m = math::cross(sample.slope, sample.bend) / (slope * slope * slope);
     } else if (i > 0) {
       point.tangent_O = path.back().tangent_O;
     }

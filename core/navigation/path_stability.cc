@@ -1,5 +1,7 @@
 #include "core/navigation/path_stability.h"
 
+#include <algorithm>
+
 #include "core/math/elementary.h"
 
 namespace surefoot::navigation {
@@ -54,7 +56,7 @@ void PathStability::mark(const CostMap& map, const RawPath& path_O_m) {
   for (std::size_t i = 0; i + 1 < path_O_m.size(); ++i) {
     const Vector2 way_m = path_O_m[i + 1] - path_O_m[i];
     const double length_m = math::sqrt(way_m.squaredNorm());
-    const std::int32_t steps = floor_of(larger(1.0, 2.0 * length_m / map.cell_m()));
+    const std::int32_t steps = math::floor_of(std::max(1.0, 2.0 * length_m / map.cell_m()));
     for (std::int32_t step = 1; step <= steps; ++step) {
       mark_around(path_O_m[i] + way_m * (static_cast<double>(step) / steps));
     }
@@ -69,7 +71,7 @@ void PathStability::discount(CostMap& map, const Vector2& robot_O_m) {
   const auto far_share = static_cast<std::uint32_t>(256.0 * config_.discount);
   const auto near_share = static_cast<std::uint32_t>(256.0 * config_.near_discount);
   const Cell robot = map.cell_of(robot_O_m);
-  const std::int32_t near = floor_of(config_.near_m / map.cell_m());
+  const std::int32_t near = math::floor_of(config_.near_m / map.cell_m());
   for (std::uint32_t i = 0; i < cells; ++i) {
     if (marked_[i] == 0) continue;
     const Cell cell = map.cell(i);
@@ -101,7 +103,7 @@ void PathStability::take(const RawPath& planned_O_m, const Vector2& robot_O_m,
   const std::size_t first = planned_O_m.size() > 1 ? 1 : 0;
   for (std::size_t i = first; i < planned_O_m.size(); ++i) add(planned_O_m[i]);
   newest_ = (newest_ + 1) % kHistory;
-  copy_used(path_O_m, history_O_m_[newest_]);
+  history_O_m_[newest_].assign(path_O_m);
 }
 
 }  // namespace surefoot::navigation

@@ -52,7 +52,7 @@ class PathStability {
   // Rule 2, and remembers the result as the last path.
   void take(const RawPath& planned_O_m, const Vector2& robot_O_m, const Vector2& past_O_m,
             RawPath& path_O_m);
-  void take_over_smoothed(const RawPath& path_O_m) { copy_used(path_O_m, over_smoothed_O_m_); }
+  void take_over_smoothed(const RawPath& path_O_m) { over_smoothed_O_m_.assign(path_O_m); }
 
   const RawPath& last_path_O_m() const { return history_O_m_[newest_]; }
 

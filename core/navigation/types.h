@@ -36,22 +36,4 @@ struct PathPoint {
 
 using Path = FixedVector<PathPoint, kMaxPathPoints>;
 
-constexpr double larger(double a, double b) { return a > b ? a : b; }
-constexpr double smaller(double a, double b) { return a < b ? a : b; }
-inline double cross(const Vector2& a, const Vector2& b) { return a[0] * b[1] - a[1] * b[0]; }
-inline Vector2 left_of(const Vector2& v) { return {-v[1], v[0]}; }
-
-// The largest whole number not above the value; |value| < 2^31.
-constexpr std::int32_t floor_of(double value) {
-  const auto whole = static_cast<std::int32_t>(value);
-  return static_cast<double>(whole) > value ? whole - 1 : whole;
-}
-
-// A copy that touches only what is there.
-template <class Vector>
-void copy_used(const Vector& from, Vector& to) {
-  to.clear();
-  for (const auto& item : from) static_cast<void>(to.push_back(item));
-}
-
 }  // namespace surefoot::navigation

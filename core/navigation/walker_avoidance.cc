@@ -1,5 +1,7 @@
 #include "core/navigation/walker_avoidance.h"
 
+#include <algorithm>
+
 #include "core/math/elementary.h"
 
 namespace surefoot::navigation {
@@ -28,12 +30,12 @@ void WalkerAvoidance::gather(const Intent& intent, const NearObjects& near, Time
     const objects::Object& object = *moving.object;
     Walker walker;
     walker.velocity_O_m_s = object.velocity_O_m_s;
-    const double age_s = larger(0.0, (stamp - object.last_seen).seconds());
+    const double age_s = std::max(0.0, (stamp - object.last_seen).seconds());
     if (age_s > kMaxAge_s) continue;
     walker.p_O_m = object.centre_O_m + object.velocity_O_m_s * age_s;
     double radius2 = 0;
     for (const Vector2& p_O_m : object.points_O_m) {
-      radius2 = larger(radius2, (p_O_m - object.centre_O_m).squaredNorm());
+      radius2 = std::max(radius2, (p_O_m - object.centre_O_m).squaredNorm());
     }
     walker.keep_m = math::sqrt(radius2) + radius_m_ + config_.walker_margin_m;
     walker.now_m = math::sqrt((walker.p_O_m - intent.robot.p_O_m).squaredNorm());
@@ -53,7 +55,7 @@ double WalkerAvoidance::room_m(const Walker& walker, const Vector2& from_O_m,
   double t_s = 0;
   if (speed2 > 1e-9) t_s = math::clamp(-apart_m.dot(closing_m_s) / speed2, 0.0, to_s - from_s);
   const double least_m = math::sqrt((apart_m + closing_m_s * t_s).squaredNorm());
-  return least_m - smaller(walker.keep_m, walker.now_m - 0.02);
+  return least_m - std::min(walker.keep_m, walker.now_m - 0.02);
 }
 
 // From all walkers.
@@ -61,7 +63,7 @@ double WalkerAvoidance::room_at_m(const Vector2& from_O_m, const Vector2& veloci
                                   double from_s, double to_s) const {
   double room = config_.walker_horizon_s * 10.0;
   for (const Walker& walker : walkers_) {
-    room = smaller(room, room_m(walker, from_O_m, velocity_O_m_s, from_s, to_s));
+    room = std::min(room, room_m(walker, from_O_m, velocity_O_m_s, from_s, to_s));
   }
   return room;
 }
@@ -78,9 +80,9 @@ double WalkerAvoidance::room_along_m(const Intent& intent, double share, double 
     const double ahead_m = share * intent.speed_m_s * step_s * static_cast<double>(i + 1);
     while (sample + 1 < path.size() && path[sample].along_m < intent.at_m + ahead_m) ++sample;
     const Vector2 next_O_m =
-        path[sample].p_O_m + intent.off_path_O_m * smaller(1.0, 1.0 / (1.0 + ahead_m));
+        path[sample].p_O_m + intent.off_path_O_m * std::min(1.0, 1.0 / (1.0 + ahead_m));
     const double from_s = step_s * static_cast<double>(i);
-    room = smaller(room, room_at_m(at_O_m, (next_O_m - at_O_m) / step_s, from_s, from_s + step_s));
+    room = std::min(room, room_at_m(at_O_m, (next_O_m - at_O_m) / step_s, from_s, from_s + step_s));
     at_O_m = next_O_m;
   }
   return room;
@@ -114,7 +116,7 @@ void WalkerAvoidance::close_ways(const RobotPose& robot, const NearObjects& near
         const double along_m = to_m.dot(unit[i]);
         if (along_m <= 0) continue;
         const double rest_m = along_m > kStepAside_m ? along_m - kStepAside_m : 0;
-        const double aside_m = cross(unit[i], to_m);
+        const double aside_m = math::cross(unit[i], to_m);
         if (rest_m * rest_m + aside_m * aside_m < keep_m * keep_m) open_[i] = false;
       }
     }

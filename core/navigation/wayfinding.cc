@@ -139,8 +139,8 @@ bool WayField::spread(const GroundMemory& memory, const Vector2& goal_O_m, doubl
 }
 
 std::uint32_t WayField::cost_at(const Vector2& p_O_m) const {
-  const std::int32_t x = floor_of(p_O_m[0] / cell_m_) - low_.x;
-  const std::int32_t y = floor_of(p_O_m[1] / cell_m_) - low_.y;
+  const std::int32_t x = math::floor_of(p_O_m[0] / cell_m_) - low_.x;
+  const std::int32_t y = math::floor_of(p_O_m[1] / cell_m_) - low_.y;
   if (!in_square(x, y)) return kUnreachable;
   const std::uint32_t cost = costs_[at(x, y)];
   return cost >= kMaxReachable / kUnit ? kUnreachable : cost * kUnit;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/math/elementary.h"
+#include "core/objects/outline.h"
 
 namespace surefoot::objects {
 namespace {
@@ -11,9 +12,10 @@ constexpr double kNowhere_m = 1e9;
 
 }  // namespace
 
-double distance_m(const Object& object, const Vector2& robot_O_m) {
+double distance_m(const FixedVector<Vector2, kMaxObjectPoints>& points_O_m,
+                  const Vector2& robot_O_m) {
   double nearest_m = kNowhere_m;
-  for (const Vector2& p : object.points_O_m) {
+  for (const Vector2& p : points_O_m) {
     nearest_m = std::min(nearest_m, (p - robot_O_m).cwiseAbs().maxCoeff());
   }
   return nearest_m;
@@ -21,15 +23,10 @@ double distance_m(const Object& object, const Vector2& robot_O_m) {
 
 void measure(Object& object, Track& track) {
   if (object.points_O_m.empty()) return;
-  Vector2 sum = Vector2::Zero();
-  track.low_O_m = object.points_O_m[0];
-  track.high_O_m = object.points_O_m[0];
-  for (const Vector2& p : object.points_O_m) {
-    sum += p;
-    track.low_O_m = track.low_O_m.cwiseMin(p);
-    track.high_O_m = track.high_O_m.cwiseMax(p);
-  }
-  object.centre_O_m = sum / static_cast<double>(object.points_O_m.size());
+  const Outline outline = outline_of(object.points_O_m);
+  track.low_O_m = outline.low_O_m;
+  track.high_O_m = outline.high_O_m;
+  object.centre_O_m = outline.mean_O_m;
 }
 
 void ObjectMemory::reset(const ObjectsConfig& config) {
@@ -52,7 +49,7 @@ bool ObjectMemory::is_forgotten(const Object& object, TimeNs now, const Vector2&
   if (age_s <= config_.recent_s || age_s < std::min(config_.far_age_s, config_.old_age_s)) {
     return false;
   }
-  const double away_m = distance_m(object, robot_O_m);
+  const double away_m = distance_m(object.points_O_m, robot_O_m);
   if (age_s >= config_.far_age_s && away_m >= config_.far_m) {
     ++counters_.far;
     return true;
@@ -96,7 +93,7 @@ bool ObjectMemory::make_room(double new_away_m, TimeNs now, const Vector2& robot
       remove(i);
       return true;
     }
-    const double away_m = distance_m(object, robot_O_m);
+    const double away_m = distance_m(object.points_O_m, robot_O_m);
     if (away_m <= config_.near_m) continue;
     if (away_m > farthest_m) {
       farthest = i;
@@ -119,10 +116,7 @@ bool ObjectMemory::make_room(double new_away_m, TimeNs now, const Vector2& robot
 Result<std::size_t> ObjectMemory::add(const FixedVector<Vector2, kMaxObjectPoints>& points,
                                       ObjectClass kind, TimeNs now, const Vector2& robot_O_m) {
   if (objects_.full()) {
-    double away_m = kNowhere_m;
-    for (const Vector2& p : points) {
-      away_m = std::min(away_m, (p - robot_O_m).cwiseAbs().maxCoeff());
-    }
+    const double away_m = distance_m(points, robot_O_m);
     if (kind == ObjectClass::kGround || !make_room(away_m, now, robot_O_m)) {
       ++counters_.refused;
       return Status::kExhausted;

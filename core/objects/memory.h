@@ -70,8 +70,9 @@ struct MemoryCounters {
   }
 };
 
-// Smallest infinity norm from a place to a point of the object; 1e9 without points.
-double distance_m(const Object& object, const Vector2& robot_O_m);
+// Smallest infinity norm from a place to a point of an object; 1e9 without points.
+double distance_m(const FixedVector<Vector2, kMaxObjectPoints>& points_O_m,
+                  const Vector2& robot_O_m);
 
 class ObjectMemory {
  public:

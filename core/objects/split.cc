@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/math/elementary.h"
+#include "core/objects/outline.h"
 
 namespace surefoot::objects {
 namespace {
@@ -96,16 +97,11 @@ void take(const Piece& from, const Parts& parts, std::size_t part, Piece& to) {
     to.points_O_m.begin()[kept++] = p;
   }
   static_cast<void>(to.points_O_m.resize(kept));
-  Vector2 sum = Vector2::Zero();
-  to.low_O_m = *to.points_O_m.begin();
-  to.high_O_m = to.low_O_m;
-  for (const Vector2& p : to.points_O_m) {
-    sum += p;
-    to.low_O_m = to.low_O_m.cwiseMin(p);
-    to.high_O_m = to.high_O_m.cwiseMax(p);
-  }
+  const Outline outline = outline_of(to.points_O_m);
+  to.low_O_m = outline.low_O_m;
+  to.high_O_m = outline.high_O_m;
+  to.centre_O_m = outline.mean_O_m;
   to.count = static_cast<std::uint32_t>(kept);
-  to.centre_O_m = sum / static_cast<double>(kept);
   to.z_low_m = from.z_low_m;
   to.z_high_m = from.z_high_m;
   to.partial = true;

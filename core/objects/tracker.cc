@@ -38,7 +38,7 @@ Vector2 position_of(const Piece& piece, const View& view) {
   const double away_m = math::sqrt(off.squaredNorm());
   if (!view.by_scan || !is_compact(piece) || !(away_m > 0)) return piece.centre_O_m;
   const Vector2 sight = off / away_m;
-  const Vector2 side(-sight[1], sight[0]);
+  const Vector2 side = math::left_of(sight);
   double low_m = kFar_m;
   double high_m = -kFar_m;
   for (const Vector2& p : piece.points_O_m) {

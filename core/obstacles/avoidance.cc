@@ -1,18 +1,10 @@
 #include "core/obstacles/avoidance.h"
 
+#include <algorithm>
+
 #include "core/math/elementary.h"
 
 namespace surefoot::obstacles {
-namespace {
-
-double cross(const Vector2& a, const Vector2& b) { return a[0] * b[1] - a[1] * b[0]; }
-
-Vector2 left_of(const Vector2& v) { return {-v[1], v[0]}; }
-
-double larger(double a, double b) { return a > b ? a : b; }
-double smaller(double a, double b) { return a < b ? a : b; }
-
-}  // namespace
 
 void Avoidance::reset(const ObstacleConfig& config, const Footprint& footprint) {
   config_ = config;
@@ -72,7 +64,7 @@ Vector2 Avoidance::push_O_m_s(const Fields& fields, const RobotPlace& place) con
 double Avoidance::free_space_m(const Fields& fields, const RobotPlace& place) const {
   const Axis robot = axis(place);
   double least_m = config_.reach_m;
-  for (const Field& field : fields) least_m = smaller(least_m, contact(field, robot).free_m);
+  for (const Field& field : fields) least_m = std::min(least_m, contact(field, robot).free_m);
   return least_m;
 }
 
@@ -85,12 +77,12 @@ void Avoidance::extend(const Fields& fields, const RobotPlace& place, const Vect
     const Vector2 to_field = field.centre_O_m - place.p_O_m;
     const double along_m = to_field.dot(path_O);
     if (along_m < 0 || along_m > sight_m) continue;
-    const double left_m = cross(path_O, to_field);
+    const double left_m = math::cross(path_O, to_field);
     const double near_m = extent.any ? extent.low_m - 2.0 * room_m() : -room_m();
     const double far_m = extent.any ? extent.high_m + 2.0 * room_m() : room_m();
     if (left_m < near_m || left_m > far_m) continue;
-    extent.low_m = extent.any ? smaller(extent.low_m, left_m) : left_m;
-    extent.high_m = extent.any ? larger(extent.high_m, left_m) : left_m;
+    extent.low_m = extent.any ? std::min(extent.low_m, left_m) : left_m;
+    extent.high_m = extent.any ? std::max(extent.high_m, left_m) : left_m;
     extent.any = true;
   }
 }
@@ -110,17 +102,17 @@ void Avoidance::choose_side(const Fields& fields, const RobotPlace& place, const
   // There, and back to the line.
   const double left_m = extent.high_m + room_m();
   const double right_m = room_m() - extent.low_m;
-  const double left_cost = left_m + larger(0.0, wish.off_path_m + left_m);
-  const double right_cost = right_m + larger(0.0, right_m - wish.off_path_m);
+  const double left_cost = left_m + std::max(0.0, wish.off_path_m + left_m);
+  const double right_cost = right_m + std::max(0.0, right_m - wish.off_path_m);
   side_ = left_cost <= right_cost ? 1 : -1;
 }
 
 Vector2 Avoidance::bounded(const Vector2& v_O_m_s, const Vector2& heading_O) const {
   const double forward =
       math::clamp(v_O_m_s.dot(heading_O), -config_.max_back_m_s, config_.max_forward_m_s);
-  const double left =
-      math::clamp(cross(heading_O, v_O_m_s), -config_.max_sideways_m_s, config_.max_sideways_m_s);
-  return heading_O * forward + left_of(heading_O) * left;
+  const double left = math::clamp(math::cross(heading_O, v_O_m_s), -config_.max_sideways_m_s,
+                                  config_.max_sideways_m_s);
+  return heading_O * forward + math::left_of(heading_O) * left;
 }
 
 // Towards a field no faster than the free space before it allows. What one field takes away may
@@ -131,7 +123,7 @@ Vector2 Avoidance::slowed(const Vector2& v_O_m_s, const Fields& fields, const Ax
     for (const Field& field : fields) {
       const Contact found = contact(field, axis);
       if (found.free_m >= config_.reach_m) continue;
-      const double limit = config_.approach_gain_1_s * larger(found.free_m, 0.0);
+      const double limit = config_.approach_gain_1_s * std::max(found.free_m, 0.0);
       const double towards = -v.dot(found.away_O);
       if (towards > limit) v += found.away_O * (towards - limit);
     }
@@ -142,7 +134,7 @@ Vector2 Avoidance::slowed(const Vector2& v_O_m_s, const Fields& fields, const Ax
 Vector2 Avoidance::velocity_O_m_s(const Fields& fields, const RobotPlace& place, const Wish& wish) {
   choose_side(fields, place, wish);
   const Axis robot = axis(place);
-  const Vector2 aside = left_of(wish.path_O) * static_cast<double>(side_);
+  const Vector2 aside = math::left_of(wish.path_O) * static_cast<double>(side_);
   bool in_reach = false;
   Vector2 v = wish.velocity_O_m_s;
   for (const Field& field : fields) {
@@ -150,7 +142,7 @@ Vector2 Avoidance::velocity_O_m_s(const Fields& fields, const RobotPlace& place,
     if (found.free_m >= config_.reach_m) continue;
     in_reach = true;
     const double push = push_m_s(found.free_m);
-    const double ahead = larger(0.0, -found.away_O.dot(wish.path_O));
+    const double ahead = std::max(0.0, -found.away_O.dot(wish.path_O));
     v += found.away_O * push;
     v += aside * (config_.swirl * push * ahead);
   }

@@ -10,17 +10,15 @@ constexpr double kParallel = 1e-12;
 
 constexpr double kOfRoom = 0.95;
 
-double cross(const Vector2& a, const Vector2& b) { return a[0] * b[1] - a[1] * b[0]; }
-
 // Whether an edge of `a` has all of `b` on its outside.
 bool edge_separates(const Triangle& a, const Triangle& b) {
   const auto& p = a.corners_O_m;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector2 edge = p[(i + 1) % 3] - p[i];
-    const bool inside_left = cross(edge, p[(i + 2) % 3] - p[i]) > 0;
+    const bool inside_left = math::cross(edge, p[(i + 2) % 3] - p[i]) > 0;
     bool all_outside = true;
     for (const Vector2& corner : b.corners_O_m) {
-      const double side = cross(edge, corner - p[i]);
+      const double side = math::cross(edge, corner - p[i]);
       all_outside = all_outside && (inside_left ? side < 0 : side > 0);
     }
     if (all_outside) return true;
@@ -69,7 +67,7 @@ Triangle Triangle::drawn_in(double margin_m) const {
   const double c_m = (p[1] - p[0]).norm();
   const double perimeter_m = a_m + b_m + c_m;
   if (!(perimeter_m > 0)) return *this;
-  const double radius_m = math::magnitude(cross(p[1] - p[0], p[2] - p[1])) / perimeter_m;
+  const double radius_m = math::magnitude(math::cross(p[1] - p[0], p[2] - p[1])) / perimeter_m;
   if (radius_m <= kRounding_m) return *this;
   const Vector2 centre = (a_m * p[0] + b_m * p[1] + c_m * p[2]) / perimeter_m;
   const double share = 1.0 - kept_margin_m(radius_m, margin_m) / radius_m;
@@ -83,17 +81,17 @@ double Triangle::inradius_m() const {
   const Vector2 bc = corners_O_m[2] - corners_O_m[1];
   const Vector2 ca = corners_O_m[0] - corners_O_m[2];
   const double perimeter_m = ab.norm() + bc.norm() + ca.norm();
-  return perimeter_m > 0 ? math::magnitude(cross(ab, bc)) / perimeter_m : 0.0;
+  return perimeter_m > 0 ? math::magnitude(math::cross(ab, bc)) / perimeter_m : 0.0;
 }
 
 Status SupportRegion::add(const Triangle& triangle, double margin_m) {
   if (lines_.size() + 3 > lines_.capacity()) return Status::kExhausted;
   if (triangle.inradius_m() <= kRounding_m) return Status::kInvalid;
   const auto& p = triangle.corners_O_m;
-  const double turn = cross(p[1] - p[0], p[2] - p[1]) < 0 ? -1.0 : 1.0;
+  const double turn = math::cross(p[1] - p[0], p[2] - p[1]) < 0 ? -1.0 : 1.0;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector2 edge = (p[(i + 1) % 3] - p[i]).normalized();
-    const Vector2 inward = turn * Vector2(-edge[1], edge[0]);
+    const Vector2 inward = turn * math::left_of(edge);
     static_cast<void>(lines_.push_back({inward, inward.dot(p[i]) + margin_m}));
   }
   return Status::kOk;
@@ -126,7 +124,7 @@ Result<Vector2> SupportRegion::nearest(const Vector2& wanted_O_m) const {
     try_point(wanted_O_m + (line.offset_m - line.inward.dot(wanted_O_m)) * line.inward);
     for (std::size_t j = i + 1; j < lines_.size(); ++j) {
       const Line& other = lines_[j];
-      const double sine = cross(line.inward, other.inward);
+      const double sine = math::cross(line.inward, other.inward);
       if (math::magnitude(sine) < kParallel) continue;
       try_point({(line.offset_m * other.inward[1] - other.offset_m * line.inward[1]) / sine,
                  (other.offset_m * line.inward[0] - line.offset_m * other.inward[0]) / sine});

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "core/base/status.h"
+#include "core/math/elementary.h"
 #include "core/math/linear.h"
 #include "core/registration/moments.h"
 
@@ -102,7 +103,8 @@ class Cloud {
   }
   CellPlace place_of(int level, const Vector3& p_m) const {
     const double scale = cells_per_m_[static_cast<std::size_t>(level)];
-    return {floor_of(p_m.x() * scale), floor_of(p_m.y() * scale), floor_of(p_m.z() * scale)};
+    return {math::floor_of(p_m.x() * scale), math::floor_of(p_m.y() * scale),
+            math::floor_of(p_m.z() * scale)};
   }
 
   const Vector3& mean_m(std::size_t cell) const { return means_m_[cell]; }
@@ -138,10 +140,6 @@ class Cloud {
   static Span span(std::int32_t cell) {
     const std::int32_t first = cell - 1;
     return {first >> 2, (cell + 1) >> 2, 7u << static_cast<std::uint32_t>(first & 3)};
-  }
-  static std::int32_t floor_of(double value) {
-    const auto truncated = static_cast<std::int32_t>(value);
-    return truncated - (value < static_cast<double>(truncated) ? 1 : 0);
   }
   static std::uint64_t block_key(int level, const CellPlace& block) {
     const auto part = [](std::int32_t index) {

@@ -4,6 +4,7 @@
 
 #include "core/math/linear.h"
 #include "sim_hal/sensors/capsule.h"
+#include "sim_hal/world/cell_raster.h"
 #include "sim_hal/world/solid_kind.h"
 #include "sim_hal/world/terrain_box.h"
 
@@ -27,13 +28,6 @@ struct Sapling {
   double radius_m = 0;
   double bottom_m = 0;
   double top_m = 0;
-};
-
-struct PlanBounds {
-  double x0 = 0;
-  double y0 = 0;
-  double x1 = 0;
-  double y1 = 0;
 };
 
 PlanBounds plan_bounds(const Solid& solid);

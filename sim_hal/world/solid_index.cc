@@ -27,78 +27,25 @@ SolidIndex::SolidIndex(const std::vector<Solid>& solids, const std::vector<Sapli
   if (empty()) return;
   PlanBounds all = solid_bounds.empty() ? sapling_bounds.front() : solid_bounds.front();
   for (const auto* list : {&solid_bounds, &sapling_bounds}) {
-    for (const PlanBounds& b : *list) {
-      all = {std::min(all.x0, b.x0), std::min(all.y0, b.y0), std::max(all.x1, b.x1),
-             std::max(all.y1, b.y1)};
-    }
+    for (const PlanBounds& bounds : *list) all.include(bounds);
   }
-  x0_m_ = all.x0 - 0.001;
-  y0_m_ = all.y0 - 0.001;
-  nx_ = static_cast<std::size_t>(std::ceil((all.x1 + 0.001 - x0_m_) / kCell_m));
-  ny_ = static_cast<std::size_t>(std::ceil((all.y1 + 0.001 - y0_m_) / kCell_m));
-  fill(solid_bounds, solid_layer_);
-  fill(sapling_bounds, sapling_layer_);
-}
-
-void SolidIndex::fill(const std::vector<PlanBounds>& bounds, Layer& layer) const {
-  std::vector<std::vector<std::uint32_t>> lists(nx_ * ny_);
-  for (std::size_t k = 0; k < bounds.size(); ++k) {
-    std::size_t range[4];
-    if (!rectangle(bounds[k].x0, bounds[k].y0, bounds[k].x1, bounds[k].y1, range)) continue;
-    for (std::size_t j = range[1]; j <= range[3]; ++j) {
-      for (std::size_t i = range[0]; i <= range[2]; ++i) {
-        lists[j * nx_ + i].push_back(static_cast<std::uint32_t>(k));
-      }
-    }
-  }
-  layer.cells.resize(nx_ * ny_);
-  for (std::size_t c = 0; c < lists.size(); ++c) {
-    layer.cells[c] = {static_cast<std::uint32_t>(layer.items.size()),
-                      static_cast<std::uint32_t>(lists[c].size())};
-    layer.items.insert(layer.items.end(), lists[c].begin(), lists[c].end());
-  }
-}
-
-bool SolidIndex::rectangle(double x0, double y0, double x1, double y1,
-                           std::size_t (&range)[4]) const {
-  if (nx_ == 0) return false;
-  const double limit_x = static_cast<double>(nx_);
-  const double limit_y = static_cast<double>(ny_);
-  const double i0 = std::floor((x0 - x0_m_) / kCell_m);
-  const double j0 = std::floor((y0 - y0_m_) / kCell_m);
-  const double i1 = std::floor((x1 - x0_m_) / kCell_m);
-  const double j1 = std::floor((y1 - y0_m_) / kCell_m);
-  if (!(i1 >= 0 && j1 >= 0 && i0 < limit_x && j0 < limit_y)) return false;
-  range[0] = static_cast<std::size_t>(std::max(0.0, i0));
-  range[1] = static_cast<std::size_t>(std::max(0.0, j0));
-  range[2] = static_cast<std::size_t>(std::min(limit_x - 1, i1));
-  range[3] = static_cast<std::size_t>(std::min(limit_y - 1, j1));
-  return true;
-}
-
-// Where the ray is above the raster.
-bool SolidIndex::enter(const Vector3& origin, const Vector3& direction, double& t0,
-                       double& t1) const {
-  return nx_ > 0 &&
-         clip(origin.x(), direction.x(), x0_m_, x0_m_ + kCell_m * static_cast<double>(nx_), t0,
-              t1) &&
-         clip(origin.y(), direction.y(), y0_m_, y0_m_ + kCell_m * static_cast<double>(ny_), t0, t1);
+  raster_ = CellRaster(all, kCell_m);
+  solid_lists_.fill(raster_, solid_bounds);
+  sapling_lists_.fill(raster_, sapling_bounds);
 }
 
 double SolidIndex::cast(const Vector3& origin, const Vector3& direction, double t_max) const {
   double t0 = 0;
   double t1 = t_max;
-  if (!enter(origin, direction, t0, t1)) return kNoHit;
-  const Vector3 offset(origin.x() - x0_m_, origin.y() - y0_m_, origin.z());
-  RasterWalk walk(offset, direction, t0, kCell_m, nx_, ny_);
-  while (walk.inside(nx_, ny_)) {
+  if (!raster_.enter(origin, direction, t0, t1)) return kNoHit;
+  RasterWalk walk(raster_.offset(origin), direction, t0, kCell_m, raster_.nx(), raster_.ny());
+  while (walk.inside(raster_.nx(), raster_.ny())) {
     const double until = std::min(walk.leave(), t1);
-    const std::size_t c = static_cast<std::size_t>(walk.j) * nx_ + static_cast<std::size_t>(walk.i);
-    const Cell& cell = solid_layer_.cells[c];
+    const std::size_t cell =
+        raster_.index(static_cast<std::size_t>(walk.i), static_cast<std::size_t>(walk.j));
     double hit = kNoHit;
-    for (std::uint32_t k = 0; k < cell.count; ++k) {
-      const Solid& solid = solids_[solid_layer_.items[cell.first + k]];
-      hit = std::min(hit, cast_solid(solid, origin, direction));
+    for (const std::uint32_t k : solid_lists_.in(cell)) {
+      hit = std::min(hit, cast_solid(solids_[k], origin, direction));
     }
     // What reaches into later cells may be hit there, behind something nearer.
     if (hit <= until) return hit;
@@ -113,17 +60,16 @@ double SolidIndex::cast_saplings(const Vector3& origin, const Vector3& direction
   double t0 = 0;
   double t1 = t_max;
   const double level2 = direction.x() * direction.x() + direction.y() * direction.y();
-  if (saplings_.empty() || level2 == 0 || !enter(origin, direction, t0, t1)) return kNoHit;
+  if (saplings_.empty() || level2 == 0 || !raster_.enter(origin, direction, t0, t1)) return kNoHit;
   const double level = std::sqrt(level2);
-  const Vector3 offset(origin.x() - x0_m_, origin.y() - y0_m_, origin.z());
-  RasterWalk walk(offset, direction, t0, kCell_m, nx_, ny_);
-  while (walk.inside(nx_, ny_)) {
+  RasterWalk walk(raster_.offset(origin), direction, t0, kCell_m, raster_.nx(), raster_.ny());
+  while (walk.inside(raster_.nx(), raster_.ny())) {
     const double until = std::min(walk.leave(), t1);
-    const std::size_t c = static_cast<std::size_t>(walk.j) * nx_ + static_cast<std::size_t>(walk.i);
-    const Cell& cell = sapling_layer_.cells[c];
+    const std::size_t cell =
+        raster_.index(static_cast<std::size_t>(walk.i), static_cast<std::size_t>(walk.j));
     double nearest = kNoHit;
-    for (std::uint32_t k = 0; k < cell.count; ++k) {
-      const Sapling& s = saplings_[sapling_layer_.items[cell.first + k]];
+    for (const std::uint32_t k : sapling_lists_.in(cell)) {
+      const Sapling& s = saplings_[k];
       const double dx = s.x_m - origin.x();
       const double dy = s.y_m - origin.y();
       const double t = (dx * direction.x() + dy * direction.y()) / level2;
@@ -145,32 +91,17 @@ double SolidIndex::cast_saplings(const Vector3& origin, const Vector3& direction
 
 double SolidIndex::top_m(double x, double y) const {
   double top = -kNoHit;
-  std::size_t range[4];
-  if (!rectangle(x, y, x, y, range)) return top;
-  const Cell& cell = solid_layer_.cells[range[1] * nx_ + range[0]];
-  for (std::uint32_t k = 0; k < cell.count; ++k) {
-    top = std::max(top, top_at(solids_[solid_layer_.items[cell.first + k]], x, y));
+  CellRange range;
+  if (!raster_.range({x, y, x, y}, range)) return top;
+  for (const std::uint32_t k : solid_lists_.in(raster_.index(range.i0, range.j0))) {
+    top = std::max(top, top_at(solids_[k], x, y));
   }
   return top;
 }
 
 std::size_t SolidIndex::near(double x0, double y0, double x1, double y1,
                              std::span<std::uint32_t> out) const {
-  std::size_t range[4];
-  if (!rectangle(x0, y0, x1, y1, range)) return 0;
-  std::size_t count = 0;
-  for (std::size_t j = range[1]; j <= range[3]; ++j) {
-    for (std::size_t i = range[0]; i <= range[2]; ++i) {
-      const Cell& cell = solid_layer_.cells[j * nx_ + i];
-      for (std::uint32_t k = 0; k < cell.count && count < out.size(); ++k) {
-        const std::uint32_t solid = solid_layer_.items[cell.first + k];
-        const auto end = out.begin() + static_cast<std::ptrdiff_t>(count);
-        if (std::find(out.begin(), end, solid) == end) out[count++] = solid;
-      }
-    }
-  }
-  std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count));
-  return count;
+  return solid_lists_.near(raster_, {x0, y0, x1, y1}, out);
 }
 
 Clearance SolidIndex::clearance(const Vector2& a_m, const Vector2& b_m, double half_width_m,

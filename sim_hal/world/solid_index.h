@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/math/linear.h"
+#include "sim_hal/world/cell_raster.h"
 #include "sim_hal/world/ray.h"
 #include "sim_hal/world/solid.h"
 
@@ -46,27 +47,11 @@ class SolidIndex {
                       double reach_m) const;
 
  private:
-  struct Cell {
-    std::uint32_t first = 0;  // into items_
-    std::uint32_t count = 0;
-  };
-  struct Layer {  // lists of what lies in each cell
-    std::vector<Cell> cells;
-    std::vector<std::uint32_t> items;
-  };
-
-  bool rectangle(double x0, double y0, double x1, double y1, std::size_t (&range)[4]) const;
-  void fill(const std::vector<PlanBounds>& bounds, Layer& layer) const;
-  bool enter(const Vector3& origin, const Vector3& direction, double& t0, double& t1) const;
-
   const std::vector<Solid>& solids_;
   const std::vector<Sapling>& saplings_;
-  double x0_m_ = 0;
-  double y0_m_ = 0;
-  std::size_t nx_ = 0;
-  std::size_t ny_ = 0;
-  Layer solid_layer_;
-  Layer sapling_layer_;
+  CellRaster raster_;
+  CellLists solid_lists_;
+  CellLists sapling_lists_;
 };
 
 }  // namespace surefoot::sim

@@ -9,21 +9,7 @@ namespace surefoot::sim {
 
 namespace {
 
-struct Rectangle {
-  double x0 = 0;
-  double y0 = 0;
-  double x1 = 0;
-  double y1 = 0;
-
-  void include(const Rectangle& other) {
-    x0 = std::min(x0, other.x0);
-    y0 = std::min(y0, other.y0);
-    x1 = std::max(x1, other.x1);
-    y1 = std::max(y1, other.y1);
-  }
-};
-
-Rectangle bounds(const TerrainBox& box) {
+PlanBounds bounds_of(const TerrainBox& box) {
   const double c = std::fabs(box.cos_yaw);
   const double s = std::fabs(box.sin_yaw);
   const double reach_x = c * box.half_length_m + s * box.half_width_m;
@@ -34,50 +20,38 @@ Rectangle bounds(const TerrainBox& box) {
 }  // namespace
 
 TerrainIndex::TerrainIndex(const Terrain& terrain) : terrain_(terrain) {
-  bool any = false;
-  Rectangle all;
-  const auto include = [&](const Rectangle& rectangle) {
-    if (any) {
-      all.include(rectangle);
-    } else {
-      all = rectangle;
-    }
-    any = true;
-  };
-  for (const TerrainBox& box : terrain.boxes) include(bounds(box));
+  std::vector<PlanBounds> parts;
+  for (const TerrainBox& box : terrain.boxes) parts.push_back(bounds_of(box));
   const HeightGrid& grid = terrain.grid;
-  if (!grid.empty()) include({grid.x0_m, grid.y0_m, grid.end_x_m(), grid.end_y_m()});
-  if (!any) return;
-  // A margin of 1 mm: surfaces on the border belong to the raster.
-  x0_m_ = all.x0 - 0.001;
-  y0_m_ = all.y0 - 0.001;
-  nx_ = static_cast<std::size_t>(std::ceil((all.x1 + 0.001 - x0_m_) / kCell_m));
-  ny_ = static_cast<std::size_t>(std::ceil((all.y1 + 0.001 - y0_m_) / kCell_m));
-  cells_.resize(nx_ * ny_);
+  if (!grid.empty()) parts.push_back({grid.x0_m, grid.y0_m, grid.end_x_m(), grid.end_y_m()});
+  if (parts.empty()) return;
+  PlanBounds all = parts.front();
+  for (const PlanBounds& part : parts) all.include(part);
+  raster_ = CellRaster(all, kCell_m);
+  cell_max_m_.resize(raster_.cells());
   add_boxes();
   add_grid();
-  for (const Cell& cell : cells_) max_m_ = std::max(max_m_, cell.max_m);
+  for (const double cell_m : cell_max_m_) max_m_ = std::max(max_m_, cell_m);
+}
+
+void TerrainIndex::raise(const PlanBounds& bounds, double top_m) {
+  CellRange range;
+  if (!raster_.range(bounds, range)) return;
+  for (std::size_t j = range.j0; j <= range.j1; ++j) {
+    for (std::size_t i = range.i0; i <= range.i1; ++i) {
+      double& highest_m = cell_max_m_[raster_.index(i, j)];
+      highest_m = std::max(highest_m, top_m);
+    }
+  }
 }
 
 void TerrainIndex::add_boxes() {
-  std::vector<std::vector<std::uint32_t>> lists(cells_.size());
-  for (std::size_t k = 0; k < terrain_.boxes.size(); ++k) {
-    const Rectangle r = bounds(terrain_.boxes[k]);
-    std::size_t range[4];
-    if (!rectangle(r.x0, r.y0, r.x1, r.y1, range)) continue;
-    for (std::size_t j = range[1]; j <= range[3]; ++j) {
-      for (std::size_t i = range[0]; i <= range[2]; ++i) {
-        lists[j * nx_ + i].push_back(static_cast<std::uint32_t>(k));
-        Cell& cell = cells_[j * nx_ + i];
-        cell.max_m = std::max(cell.max_m, terrain_.boxes[k].top_m);
-      }
-    }
+  std::vector<PlanBounds> bounds;
+  for (const TerrainBox& box : terrain_.boxes) {
+    bounds.push_back(bounds_of(box));
+    raise(bounds.back(), box.top_m);
   }
-  for (std::size_t c = 0; c < cells_.size(); ++c) {
-    cells_[c].first = static_cast<std::uint32_t>(items_.size());
-    cells_[c].count = static_cast<std::uint32_t>(lists[c].size());
-    items_.insert(items_.end(), lists[c].begin(), lists[c].end());
-  }
+  boxes_.fill(raster_, bounds);
 }
 
 void TerrainIndex::add_grid() {
@@ -89,43 +63,17 @@ void TerrainIndex::add_grid() {
                                   std::max(grid.at(i, j + 1), grid.at(i + 1, j + 1)));
       const double x = grid.x0_m + grid.cell_m * static_cast<double>(i);
       const double y = grid.y0_m + grid.cell_m * static_cast<double>(j);
-      std::size_t range[4];
-      if (!rectangle(x, y, x + grid.cell_m, y + grid.cell_m, range)) continue;
-      for (std::size_t b = range[1]; b <= range[3]; ++b) {
-        for (std::size_t a = range[0]; a <= range[2]; ++a) {
-          Cell& cell = cells_[b * nx_ + a];
-          cell.max_m = std::max(cell.max_m, top);
-        }
-      }
+      raise({x, y, x + grid.cell_m, y + grid.cell_m}, top);
     }
   }
 }
 
-// Raster cells [0]..[2] by [1]..[3] of a rectangle; false when it misses the raster.
-bool TerrainIndex::rectangle(double x0, double y0, double x1, double y1,
-                             std::size_t (&range)[4]) const {
-  if (cells_.empty()) return false;
-  const double limit_x = static_cast<double>(nx_);
-  const double limit_y = static_cast<double>(ny_);
-  const double i0 = std::floor((x0 - x0_m_) / kCell_m);
-  const double j0 = std::floor((y0 - y0_m_) / kCell_m);
-  const double i1 = std::floor((x1 - x0_m_) / kCell_m);
-  const double j1 = std::floor((y1 - y0_m_) / kCell_m);
-  if (!(i1 >= 0 && j1 >= 0 && i0 < limit_x && j0 < limit_y)) return false;
-  range[0] = static_cast<std::size_t>(std::max(0.0, i0));
-  range[1] = static_cast<std::size_t>(std::max(0.0, j0));
-  range[2] = static_cast<std::size_t>(std::min(limit_x - 1, i1));
-  range[3] = static_cast<std::size_t>(std::min(limit_y - 1, j1));
-  return true;
-}
-
 double TerrainIndex::height_m(double x, double y) const {
   double height = terrain_.grid.contains(x, y) ? terrain_.grid.height_m(x, y) : 0.0;
-  std::size_t range[4];
-  if (!rectangle(x, y, x, y, range)) return height;
-  const Cell& cell = cells_[range[1] * nx_ + range[0]];
-  for (std::uint32_t k = 0; k < cell.count; ++k) {
-    const TerrainBox& box = terrain_.boxes[items_[cell.first + k]];
+  CellRange range;
+  if (!raster_.range({x, y, x, y}, range)) return height;
+  for (const std::uint32_t k : boxes_.in(raster_.index(range.i0, range.j0))) {
+    const TerrainBox& box = terrain_.boxes[k];
     if (box.top_m > height && box.covers(x, y)) height = box.top_m;
   }
   return height;
@@ -133,11 +81,11 @@ double TerrainIndex::height_m(double x, double y) const {
 
 double TerrainIndex::max_height_m(double x0, double y0, double x1, double y1) const {
   double height = 0;
-  std::size_t range[4];
-  if (!rectangle(x0, y0, x1, y1, range)) return height;
-  for (std::size_t j = range[1]; j <= range[3]; ++j) {
-    for (std::size_t i = range[0]; i <= range[2]; ++i) {
-      height = std::max(height, cells_[j * nx_ + i].max_m);
+  CellRange range;
+  if (!raster_.range({x0, y0, x1, y1}, range)) return height;
+  for (std::size_t j = range.j0; j <= range.j1; ++j) {
+    for (std::size_t i = range.i0; i <= range.i1; ++i) {
+      height = std::max(height, cell_max_m_[raster_.index(i, j)]);
     }
   }
   return height;
@@ -145,29 +93,14 @@ double TerrainIndex::max_height_m(double x0, double y0, double x1, double y1) co
 
 std::size_t TerrainIndex::boxes_near(double x0, double y0, double x1, double y1,
                                      std::span<std::uint32_t> out) const {
-  std::size_t range[4];
-  if (!rectangle(x0, y0, x1, y1, range)) return 0;
-  std::size_t count = 0;
-  for (std::size_t j = range[1]; j <= range[3]; ++j) {
-    for (std::size_t i = range[0]; i <= range[2]; ++i) {
-      const Cell& cell = cells_[j * nx_ + i];
-      for (std::uint32_t k = 0; k < cell.count && count < out.size(); ++k) {
-        const std::uint32_t box = items_[cell.first + k];
-        const auto end = out.begin() + static_cast<std::ptrdiff_t>(count);
-        if (std::find(out.begin(), end, box) == end) out[count++] = box;
-      }
-    }
-  }
-  std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(count));
-  return count;
+  return boxes_.near(raster_, {x0, y0, x1, y1}, out);
 }
 
-double TerrainIndex::cast_boxes(const Cell& cell, const Vector3& origin,
+double TerrainIndex::cast_boxes(std::size_t cell, const Vector3& origin,
                                 const Vector3& direction) const {
   double nearest = kNoHit;
-  for (std::uint32_t k = 0; k < cell.count; ++k) {
-    const TerrainBox& box = terrain_.boxes[items_[cell.first + k]];
-    nearest = std::min(nearest, cast_box(box, origin, direction));
+  for (const std::uint32_t k : boxes_.in(cell)) {
+    nearest = std::min(nearest, cast_box(terrain_.boxes[k], origin, direction));
   }
   return nearest;
 }
@@ -226,14 +159,14 @@ double TerrainIndex::cast_grid(const Vector3& origin, const Vector3& direction, 
 // Worlds with solids are wide, and scanners look far: blocks of cells are passed over at once.
 void TerrainIndex::show(const SolidIndex* solids) {
   solids_ = solids;
-  if (solids == nullptr || cells_.empty() || !block_max_m_.empty()) return;
-  blocks_x_ = (nx_ + kBlock - 1) / kBlock;
-  blocks_y_ = (ny_ + kBlock - 1) / kBlock;
+  if (solids == nullptr || raster_.empty() || !block_max_m_.empty()) return;
+  blocks_x_ = (raster_.nx() + kBlock - 1) / kBlock;
+  blocks_y_ = (raster_.ny() + kBlock - 1) / kBlock;
   block_max_m_.assign(blocks_x_ * blocks_y_, 0.0);
-  for (std::size_t j = 0; j < ny_; ++j) {
-    for (std::size_t i = 0; i < nx_; ++i) {
+  for (std::size_t j = 0; j < raster_.ny(); ++j) {
+    for (std::size_t i = 0; i < raster_.nx(); ++i) {
       double& highest = block_max_m_[j / kBlock * blocks_x_ + i / kBlock];
-      highest = std::max(highest, cells_[j * nx_ + i].max_m);
+      highest = std::max(highest, cell_max_m_[raster_.index(i, j)]);
     }
   }
 }
@@ -272,11 +205,10 @@ double TerrainIndex::cast_ground(const Vector3& origin, const Vector3& direction
   const double miss = plane <= t_max ? plane : kNoHit;
   double t0 = 0;
   double t1 = end;
-  if (cells_.empty() ||
+  if (raster_.empty() ||
       (terrain_.grid.empty() && !clip(origin.z(), direction.z(), 0.0, max_m_, t0, t1)) ||
       !clip(origin.z(), direction.z(), -1e3, max_m_, t0, t1) ||
-      !clip(origin.x(), direction.x(), x0_m_, x0_m_ + kCell_m * static_cast<double>(nx_), t0, t1) ||
-      !clip(origin.y(), direction.y(), y0_m_, y0_m_ + kCell_m * static_cast<double>(ny_), t0, t1)) {
+      !raster_.enter(origin, direction, t0, t1)) {
     return miss;
   }
   const double hit =
@@ -287,9 +219,8 @@ double TerrainIndex::cast_ground(const Vector3& origin, const Vector3& direction
 // Block by block; cell by cell where the ray is low enough for a block's highest cell.
 double TerrainIndex::leap(const Vector3& origin, const Vector3& direction, double t0,
                           double t1) const {
-  const Vector3 offset(origin.x() - x0_m_, origin.y() - y0_m_, origin.z());
-  RasterWalk walk(offset, direction, t0, kCell_m * static_cast<double>(kBlock), blocks_x_,
-                  blocks_y_);
+  RasterWalk walk(raster_.offset(origin), direction, t0, kCell_m * static_cast<double>(kBlock),
+                  blocks_x_, blocks_y_);
   double from = t0;
   while (walk.inside(blocks_x_, blocks_y_)) {
     const double until = std::min(walk.leave(), t1);
@@ -309,16 +240,15 @@ double TerrainIndex::leap(const Vector3& origin, const Vector3& direction, doubl
 
 double TerrainIndex::march(const Vector3& origin, const Vector3& direction, double t0,
                            double t1) const {
-  const Vector3 offset(origin.x() - x0_m_, origin.y() - y0_m_, origin.z());
-  RasterWalk walk(offset, direction, t0, kCell_m, nx_, ny_);
+  RasterWalk walk(raster_.offset(origin), direction, t0, kCell_m, raster_.nx(), raster_.ny());
   double from = t0;
-  while (walk.inside(nx_, ny_)) {
+  while (walk.inside(raster_.nx(), raster_.ny())) {
     const double until = std::min(walk.leave(), t1);
-    const Cell& cell =
-        cells_[static_cast<std::size_t>(walk.j) * nx_ + static_cast<std::size_t>(walk.i)];
+    const std::size_t cell =
+        raster_.index(static_cast<std::size_t>(walk.i), static_cast<std::size_t>(walk.j));
     const double lowest = origin.z() + direction.z() * (direction.z() < 0 ? until : from);
-    if (lowest <= cell.max_m) {
-      double hit = cell.count > 0 ? cast_boxes(cell, origin, direction) : kNoHit;
+    if (lowest <= cell_max_m_[cell]) {
+      double hit = cast_boxes(cell, origin, direction);
       if (!terrain_.grid.empty()) hit = std::min(hit, cast_grid(origin, direction, from, until));
       // A box reaching into later cells may be hit there, behind something nearer.
       if (hit <= until) return hit;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/math/linear.h"
+#include "sim_hal/world/cell_raster.h"
 #include "sim_hal/world/ray.h"
 #include "sim_hal/world/solid_index.h"
 #include "sim_hal/world/terrain.h"
@@ -50,29 +51,20 @@ class TerrainIndex {
   double march(const Vector3& origin, const Vector3& direction, double t0, double t1) const;
   double leap(const Vector3& origin, const Vector3& direction, double t0, double t1) const;
 
-  struct Cell {
-    std::uint32_t first = 0;  // into items_
-    std::uint32_t count = 0;
-    double max_m = 0;
-  };
-
   void add_boxes();
   void add_grid();
-  bool rectangle(double x0, double y0, double x1, double y1, std::size_t (&range)[4]) const;
-  double cast_boxes(const Cell& cell, const Vector3& origin, const Vector3& direction) const;
+  void raise(const PlanBounds& bounds, double top_m);
+  double cast_boxes(std::size_t cell, const Vector3& origin, const Vector3& direction) const;
   double cast_grid(const Vector3& origin, const Vector3& direction, double t0, double t1) const;
 
   const Terrain& terrain_;
   const TerrainBox* obstacle_ = nullptr;
   const SolidIndex* solids_ = nullptr;
   std::span<const Solid> moving_;
-  double x0_m_ = 0;
-  double y0_m_ = 0;
+  CellRaster raster_;
+  CellLists boxes_;                 // that may lie in a cell
+  std::vector<double> cell_max_m_;  // how high the ground gets there
   double max_m_ = 0;
-  std::size_t nx_ = 0;
-  std::size_t ny_ = 0;
-  std::vector<Cell> cells_;
-  std::vector<std::uint32_t> items_;
   std::size_t blocks_x_ = 0;  // blocks of kBlock x kBlock cells; none: far rays are not expected
   std::size_t blocks_y_ = 0;
   std::vector<double> block_max_m_;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/math/elementary.h"
 #include "core/navigation/navigator.h"
 
 namespace surefoot::navigation::test {
@@ -48,10 +49,10 @@ struct World {
     }
     for (const Wall& wall : walls) {
       const Vector2 way = wall.b - wall.a;
-      const double across = cross(to, way);
+      const double across = math::cross(to, way);
       if (std::abs(across) < 1e-12) continue;
-      const double along = cross(wall.a - from, way) / across;
-      const double share = cross(wall.a - from, to) / across;
+      const double along = math::cross(wall.a - from, way) / across;
+      const double share = math::cross(wall.a - from, to) / across;
       if (along >= 0 && share >= 0 && share <= 1) best = std::min(best, along);
     }
     return best;
@@ -102,7 +103,7 @@ class Perception {
       if (range >= kRange_m) continue;
       range += noise_m_ * random_.normal();
       const Vector2 p = robot.p_O_m + to * range;
-      const auto key = std::make_pair(floor_of(p[0] / 0.2), floor_of(p[1] / 0.2));
+      const auto key = std::make_pair(math::floor_of(p[0] / 0.2), math::floor_of(p[1] / 0.2));
       const auto found = points_.find(key);
       if (found == points_.end()) {
         points_[key] = {p, t_s};
@@ -176,7 +177,8 @@ class Perception {
     objects_->clear();
     std::map<std::pair<int, int>, objects::Object> pieces;
     for (const auto& [key, point] : points_) {
-      objects::Object& piece = pieces[{floor_of(point.p[0] / 2.5), floor_of(point.p[1] / 2.5)}];
+      objects::Object& piece =
+          pieces[{math::floor_of(point.p[0] / 2.5), math::floor_of(point.p[1] / 2.5)}];
       static_cast<void>(piece.points_O_m.push_back(point.p));
     }
     std::uint32_t id = 100;

@@ -146,7 +146,7 @@ TEST_F(Map, OverloadKeepsWhatIsNear) {
     ASSERT_EQ(update(scan), Status::kOk);
     bool near = false;
     for (const Object& object : map_->objects()) {
-      near = near || distance_m(object, Vector2::Zero()) < 1.6;
+      near = near || distance_m(object.points_O_m, Vector2::Zero()) < 1.6;
     }
     ASSERT_TRUE(near);
   }
