@@ -66,12 +66,15 @@ std::vector<NamedDrawing> run_pictures(const RunLog& log, const Config& config,
        "Classes are those of the map at the end. Red: where a foot was sent because the nominal "
        "place (black ring) could not bear it. Grey: never seen.",
        terrain_figure(log, terrain)},
-      {"motion", "Dashed uprights: begin and end of walking.", motion_figure(log)},
-      {"torques", "Measured by the drives. Dashed: limit of the actuator.",
-       torque_figure(log, config.robot)},
-      {"gait", "Four seconds from the middle of the walk.", gait_figure(log)},
-      {"timing", "Execution times on this computer; they are not part of the run's hash.",
-       timing_figure(tasks)}};
+      {"motion", "Dashed uprights: begin and end of walking.", motion_figure(log)}};
+  if (!config.autonomy.own_gaits) {
+    pictures.push_back({"torques", "Measured by the drives. Dashed: limit of the actuator.",
+                        torque_figure(log, config.robot)});
+    pictures.push_back({"gait", "Four seconds from the middle of the walk.", gait_figure(log)});
+  }
+  pictures.push_back({"timing",
+                      "Execution times on this computer; they are not part of the run's hash.",
+                      timing_figure(tasks)});
   if (!plans.empty()) {
     pictures.insert(
         pictures.begin(),
