@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "tests/support/rough_footsteps.h"
+#include "tests/support/samples.h"
 
 namespace surefoot::planning {
 namespace {
@@ -240,8 +241,9 @@ TEST(Footsteps, WhatTouchesTheGroundCosts) {
 }
 
 TEST(Footsteps, NeverOnUnknownGround) {
+  constexpr int kTerrains = tests::samples(100, 10);
   int steps = 0;
-  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+  for (int seed = 1; seed <= kTerrains; ++seed) {
     const auto map = rough_terrain(seed);
     Walker walker;
     walker.problem = rough_problem(seed, walker.model, *map);
@@ -251,7 +253,7 @@ TEST(Footsteps, NeverOnUnknownGround) {
       ++steps;
     }
   }
-  EXPECT_GE(steps, 200);
+  EXPECT_GE(steps, 2 * kTerrains);
 }
 
 // What bounds the rise bounds the drop.
@@ -351,7 +353,7 @@ TEST(Footsteps, APlanThatCannotGoOnIsShort) {
 }
 
 TEST(Footsteps, EqualInputsGiveEqualBits) {
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+  for (int seed = 1; seed <= tests::samples(20, 4); ++seed) {
     const auto map = rough_terrain(seed);
     Walker once;
     Walker again;
@@ -373,8 +375,9 @@ TEST(Footsteps, EqualInputsGiveEqualBits) {
 // By whole cells, far enough for other places in the cache of cells.
 TEST(Footsteps, AMovedMapMovesThePlan) {
   const mapping::CellIndex by{173, -2011};
+  constexpr int kTerrains = tests::samples(30, 4);
   int steps = 0;
-  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+  for (int seed = 1; seed <= kTerrains; ++seed) {
     const auto here = rough_terrain(seed);
     auto there = std::make_unique<terrain::TerrainMap>(*here);
     there->ground.first = here->ground.first + by;
@@ -395,7 +398,7 @@ TEST(Footsteps, AMovedMapMovesThePlan) {
       ++steps;
     }
   }
-  EXPECT_GE(steps, 60);
+  EXPECT_GE(steps, 2 * kTerrains);
 }
 
 TEST(Footsteps, SaysWhyThereIsNoPlan) {

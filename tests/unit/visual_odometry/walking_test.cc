@@ -6,12 +6,13 @@
 #include <cstdio>
 #include <vector>
 
+#include "tests/support/samples.h"
 #include "tests/unit/visual_odometry/walk.h"
 
 namespace surefoot::tests {
 namespace {
 
-constexpr std::uint64_t kSeeds = 3;
+constexpr std::uint64_t kSeeds = samples(3, 1);
 
 // Over several seeds: the worst and the mean.
 struct Spread {
