@@ -89,21 +89,22 @@ ClassGrid classify_map(const mapping::ControlMap& map, const mapping::MappingCon
   return grid;
 }
 
-double distance_to_surface_m(const TrueGround& ground, double x_m, double y_m, double z_m) {
-  constexpr double kStep_m = 0.001;
-  double nearest_m = std::fabs(z_m - ground(x_m, y_m));
+namespace {
+
+// Ring by ring around (x, y), until no sample can be nearer than what is known.
+void look_around(const TrueGround& ground, const std::array<double, 3>& p, double step_m,
+                 double& nearest_m) {
   const auto look = [&](int dx, int dy) {
-    const double across_m = std::hypot(dx, dy) * kStep_m;
+    const double across_m = std::hypot(dx, dy) * step_m;
     if (across_m >= nearest_m) return;
-    const double x = x_m + dx * kStep_m;
-    const double y = y_m + dy * kStep_m;
+    const double x = p[0] + dx * step_m;
+    const double y = p[1] + dy * step_m;
     const auto [low, high] =
-        std::minmax({ground(x, y), ground(x + kStep_m, y), ground(x, y + kStep_m)});
-    const double off_m = z_m < low ? low - z_m : (z_m > high ? z_m - high : 0.0);
+        std::minmax({ground(x, y), ground(x + step_m, y), ground(x, y + step_m)});
+    const double off_m = p[2] < low ? low - p[2] : (p[2] > high ? p[2] - high : 0.0);
     nearest_m = std::min(nearest_m, std::hypot(across_m, off_m));
   };
-  // Ring by ring, until no sample can be nearer.
-  for (int ring = 1; ring * kStep_m < nearest_m; ++ring) {
+  for (int ring = 1; ring * step_m < nearest_m; ++ring) {
     for (int i = -ring; i <= ring; ++i) {
       look(i, -ring);
       look(i, ring);
@@ -113,6 +114,20 @@ double distance_to_surface_m(const TrueGround& ground, double x_m, double y_m, d
       look(ring, i);
     }
   }
+}
+
+}  // namespace
+
+double distance_to_surface_m(const TrueGround& ground, double x_m, double y_m, double z_m) {
+  // Millimetres up to 5 cm, at most 4 % of what is farther: the foot of a tree would take a million
+  // samples.
+  const auto step_for = [](double distance_m) { return std::max(0.001, distance_m / 50); };
+  double nearest_m = std::fabs(z_m - ground(x_m, y_m));
+  double step_m = 0;
+  do {
+    step_m = step_for(nearest_m);
+    look_around(ground, {x_m, y_m, z_m}, step_m, nearest_m);
+  } while (step_for(nearest_m) < 0.5 * step_m);
   return nearest_m;
 }
 

@@ -32,6 +32,18 @@ TEST(DistanceToSurface, BesideAWallItIsTheWayToTheWall) {
   EXPECT_NEAR(distance_to_surface_m(block, 0.0, 0.0, 0.03), 0.03, 1e-12);
 }
 
+// Within a tree's foot, and far beside a tree: to some per cent, without a sample per millimetre.
+TEST(DistanceToSurface, OfWhatIsFarAwayCostsLittle) {
+  int samples = 0;
+  const TrueGround tree = [&](double x, double y) {
+    ++samples;
+    return std::hypot(x, y) < 0.2 ? 10.0 : 0.0;
+  };
+  EXPECT_NEAR(distance_to_surface_m(tree, 0.0, 0.0, 0.05), 0.2, 0.008);
+  EXPECT_NEAR(distance_to_surface_m(tree, 0.7, 0.0, 2.0), 0.5, 0.02);
+  EXPECT_LT(samples, 150'000);
+}
+
 // Blocks at random: against every sample of a square that is large enough. A wall lies between
 // samples, so two grids of 1 mm may differ by as much.
 TEST(DistanceToSurface, IsWhatLookingAtAllOfItFinds) {
