@@ -155,31 +155,6 @@ bool CostMap::passable(const Vector2& from_O_m, const Vector2& to_O_m) const {
   return true;
 }
 
-// Rings of growing size; a ring's nearest cell is as far as its number, so rings up to the best
-// distance found have to be seen.
-bool CostMap::nearest_free(Cell from, std::int32_t rings, Cell& found) const {
-  std::int64_t best = -1;
-  const auto look = [&](Cell at) {
-    if (lethal(at)) return;
-    const std::int64_t dx = at.x - from.x;
-    const std::int64_t dy = at.y - from.y;
-    const std::int64_t far = dx * dx + dy * dy;
-    if (best >= 0 && (far > best || (far == best && index(at) >= index(found)))) return;
-    best = far;
-    found = at;
-  };
-  for (std::int32_t ring = 0; ring <= rings; ++ring) {
-    if (best >= 0 && static_cast<std::int64_t>(ring) * ring > best) break;
-    for (std::int32_t i = -ring; i <= ring; ++i) {
-      look({from.x + i, from.y - ring});
-      look({from.x + i, from.y + ring});
-      look({from.x - ring, from.y + i});
-      look({from.x + ring, from.y + i});
-    }
-  }
-  return best >= 0;
-}
-
 void CostMap::discount(std::uint32_t index, std::uint32_t share) {
   const std::uint16_t cost = costs_[index];
   if (cost == kLethalCost) return;

@@ -74,7 +74,13 @@ class CostMap {
   bool passable(const Vector2& from_O_m, const Vector2& to_O_m) const;
   // The free cell nearest to a cell, by distance, then by index; false: there is none within
   // `rings` cells along an axis.
-  bool nearest_free(Cell from, std::int32_t rings, Cell& found) const;
+  bool nearest_free(Cell from, std::int32_t rings, Cell& found) const {
+    return nearest(
+        from, rings, [](Cell) { return true; }, found);
+  }
+  // The same of those that suit; asked only for cells that would be the nearest.
+  template <class Suits>
+  bool nearest(Cell from, std::int32_t rings, Suits&& suits, Cell& found) const;
 
   void set_cost(Cell cell, std::uint16_t cost) { costs_[index(cell)] = cost; }
   // Takes the share of 256ths off a cell that may be walked.
@@ -107,5 +113,32 @@ class CostMap {
   std::array<std::uint16_t, kMaxCells> costs_{};
   std::array<std::uint16_t, kMaxCells> stamped_{};  // one bit per place
 };
+
+// Rings of growing size; a ring's nearest cell is as far as its number, so rings up to the best
+// distance found have to be seen.
+template <class Suits>
+bool CostMap::nearest(Cell from, std::int32_t rings, Suits&& suits, Cell& found) const {
+  std::int64_t best = -1;
+  const auto look = [&](Cell at) {
+    if (lethal(at)) return;
+    const std::int64_t dx = at.x - from.x;
+    const std::int64_t dy = at.y - from.y;
+    const std::int64_t far = dx * dx + dy * dy;
+    if (best >= 0 && (far > best || (far == best && index(at) >= index(found)))) return;
+    if (!suits(at)) return;
+    best = far;
+    found = at;
+  };
+  for (std::int32_t ring = 0; ring <= rings; ++ring) {
+    if (best >= 0 && static_cast<std::int64_t>(ring) * ring > best) break;
+    for (std::int32_t i = -ring; i <= ring; ++i) {
+      look({from.x + i, from.y - ring});
+      look({from.x + i, from.y + ring});
+      look({from.x - ring, from.y + i});
+      look({from.x + ring, from.y + i});
+    }
+  }
+  return best >= 0;
+}
 
 }  // namespace surefoot::navigation

@@ -1,9 +1,31 @@
 #include "core/navigation/planner.h"
 
+#include <algorithm>
+#include <limits>
+
+#include "core/math/elementary.h"
+
 namespace surefoot::navigation {
 namespace {
 
 constexpr double kDoubted_s = 300.0;  // what was remembered for longer may have changed
+constexpr double kWayOut = 3.0;       // lethal radii: farther is no way out of a tight place
+
+// From a segment to the nearest point of what stands.
+double room_beside_m(const objects::Objects& objects, const Vector2& from, const Vector2& to) {
+  const Vector2 way = to - from;
+  const double length_m2 = way.squaredNorm();
+  double nearest_m2 = std::numeric_limits<double>::max();
+  for (const objects::Object& object : objects) {
+    if (object.kind == objects::ObjectClass::kGround || object.moving) continue;
+    for (const Vector2& p : object.points_O_m) {
+      const double share =
+          length_m2 > 0 ? math::clamp((p - from).dot(way) / length_m2, 0.0, 1.0) : 0.0;
+      nearest_m2 = std::min(nearest_m2, (p - from - share * way).squaredNorm());
+    }
+  }
+  return math::sqrt(nearest_m2);
+}
 
 }  // namespace
 
@@ -45,8 +67,30 @@ Cell Planner::choose_start(const PlanInput& input) {
     start_O_m = robot_O_m;
   }
   Cell start = map_.cell_of(start_O_m);
-  if (map_.lethal(start)) static_cast<void>(map_.nearest_free(start, map_.side(), start));
-  return start;
+  return map_.lethal(start) ? way_out(input, start) : start;
+}
+
+// Something stands nearer than the clearance. The robot leaves to the nearest cell that leads on,
+// not nearer to anything than it is; free cells between obstacles would be taken for a prison.
+Cell Planner::way_out(const PlanInput& input, Cell from) {
+  look_for_goal(input);
+  reach_.flood_from_outside(map_, ends_);
+  const Vector2 robot_O_m = input.robot.p_O_m;
+  const double room_m =
+      std::min(config_.half_width_m, room_beside_m(input.objects, robot_O_m, robot_O_m));
+  const auto leads_on = [&](Cell cell) {
+    if (!reach_.contains(map_.index(cell))) return false;
+    return room_beside_m(input.objects, robot_O_m, map_.centre_of_O_m(cell)) >= room_m;
+  };
+  Cell out = from;
+  const auto rings = static_cast<std::int32_t>(kWayOut * map_.lethal_radius_m() / map_.cell_m());
+  if (map_.nearest(from, rings, leads_on, out)) return out;
+  static_cast<void>(map_.nearest_free(from, map_.side(), out));
+  return out;
+}
+
+void Planner::look_for_goal(const PlanInput& input) {
+  goal_ends(map_, input.goal_O_m, config_.follow.arrive_m + map_.lethal_radius_m(), ends_);
 }
 
 // Border cells from where the field leads on, of those that can be reached.
@@ -65,7 +109,7 @@ bool Planner::goal_leads_out(const PlanInput& input) {
 
 // Floods tell beforehand whether there is a way: at most one search, and that one finds.
 SearchResult Planner::search(const PlanInput& input, Cell start, Plan& plan) {
-  goal_ends(map_, input.goal_O_m, config_.follow.arrive_m + map_.lethal_radius_m(), ends_);
+  look_for_goal(input);
   reach_.flood(map_, start);
   plan.to_goal = !ends_.list.empty() && reach_.contains(ends_.list[0].cell);
   if (!plan.to_goal) {
