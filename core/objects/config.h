@@ -20,6 +20,7 @@ struct ObjectsConfig {
   double wall_spread_m = 0;
   double evidence_s = 0;
   double row_length_m = 0;
+  double compact_range_m = 0;
   // Terrain
   double terrain_rise_m = 0;
   double terrain_reach_m = 0;
@@ -61,6 +62,7 @@ struct ObjectsConfig {
                "heights of one place's returns that ground cannot have");
     visit.real("evidence_s", self.evidence_s, {0.1, 60.0}, "half of how long heights are kept");
     visit.real("row_length_m", self.row_length_m, {0.1, 10.0}, "shorter rows are not ground");
+    visit.real("compact_range_m", self.compact_range_m, {0.1, 100.0}, "if as near as that");
     visit.real("terrain_rise_m", self.terrain_rise_m, {0.02, 2.0},
                "of the height map over its surroundings");
     visit.real("terrain_reach_m", self.terrain_reach_m, {0.02, 1.0}, "how far surroundings go");

@@ -89,7 +89,8 @@ GroundOrWall::Verdict GroundOrWall::decide(const SurfacePoint& point, const Grou
              : Verdict::kUndecided;
 }
 
-ObjectClass GroundOrWall::conclude(Verdict verdict, bool long_row, bool wall) {
+// waits: for evidence.
+ObjectClass GroundOrWall::conclude(Verdict verdict, bool waits, bool wall) {
   switch (verdict) {
     case Verdict::kHigh: ++counters_.high; return ObjectClass::kObstacle;
     case Verdict::kSpread: ++counters_.spread; return ObjectClass::kObstacle;
@@ -97,11 +98,11 @@ ObjectClass GroundOrWall::conclude(Verdict verdict, bool long_row, bool wall) {
     case Verdict::kGround: ++counters_.ground; return ObjectClass::kGround;
     case Verdict::kUndecided: break;
   }
-  if (long_row && !wall) {
+  if (waits && !wall) {
     ++counters_.undecided;
     return ObjectClass::kGround;
   }
-  ++(long_row ? counters_.row : counters_.compact);
+  ++(waits ? counters_.row : counters_.compact);
   return ObjectClass::kObstacle;
 }
 
@@ -123,7 +124,8 @@ void GroundOrWall::part(const SurfacePoints& points, TimeNs stamp, const GroundP
     }
     const bool wall = kWallShare * sure >= end - begin;
     for (std::size_t i = begin; i < end; ++i) {
-      const ObjectClass kind = conclude(verdicts_[i], long_row, wall);
+      const bool far = static_cast<double>(points[i].range_m) > config_.compact_range_m;
+      const ObjectClass kind = conclude(verdicts_[i], long_row || far, wall);
       SurfacePoints& to = kind == ObjectClass::kGround ? grounds : obstacles;
       static_cast<void>(to.push_back(points[i]));  // as many as came in
     }

@@ -13,10 +13,11 @@
 //    is never used to call something ground: the map may hold the obstacle itself.
 // 4. The plane under the feet: what lies on it (roughness_m + feet_slope_error x distance) is
 //    ground, if none of the above spoke.
-// 5. Shape, for what remains: a row shorter than row_length_m is an obstacle (a trunk, a person), a
-//    long one is ground until 1, 2 or 3 speaks. A row goes on to the next return if that is
-//    within 0.5 m or within 15 % of the range (ground at a grazing angle is seen in patches), with
-//    at most two beams between that gave none.
+// 5. Shape, for what remains: a row shorter than row_length_m and nearer than compact_range_m is an
+//    obstacle (a trunk, a person), what is longer or farther is ground until 1, 2 or 3 speaks: on
+//    rolling ground a quarter of such short rows is bare ground (README.md). A row goes on to the
+//    next return if that is within 0.5 m or within 15 % of the range (ground at a grazing angle is
+//    seen in patches), with at most two beams between that gave none.
 // 6. The row: where 1 and 2 speak for a third of it, the rest but for rule 4 is the same wall.
 #pragma once
 
@@ -45,7 +46,7 @@ struct GroundCounters {
   std::uint64_t ground = 0;  // by rule 4
   std::uint64_t compact = 0;
   std::uint64_t row = 0;        // by rule 6
-  std::uint64_t undecided = 0;  // long rows taken for ground
+  std::uint64_t undecided = 0;  // long or far rows taken for ground
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -92,7 +93,7 @@ class GroundOrWall {
   enum class Verdict : std::uint8_t { kHigh, kSpread, kMapped, kGround, kUndecided };
   Verdict decide(const SurfacePoint& point, const GroundPlane& ground, std::int32_t period,
                  const mapping::MapWindow* map);
-  ObjectClass conclude(Verdict verdict, bool long_row, bool wall);
+  ObjectClass conclude(Verdict verdict, bool waits, bool wall);
   std::size_t row_end(const SurfacePoints& points, std::size_t begin, bool& long_row) const;
 
   ObjectsConfig config_;

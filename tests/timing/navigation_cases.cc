@@ -35,6 +35,7 @@ class ObjectsScan final : public WorkCase {
       objects::ObjectsConfig config = load({}).autonomy.navigation.objects;
       config.scan_stride = 1;
       config.min_points = 1;
+      config.compact_range_m = 30.0;  // all of it is feared
       config.merge_m = 0.05;
       map_.reset(config);
       for (std::size_t i = 0; i < 20; ++i) take(noise(i, random_));

@@ -17,6 +17,7 @@ inline ObjectsConfig config() {
   config.wall_spread_m = 0.2;
   config.evidence_s = 1.0;
   config.row_length_m = 1.5;
+  config.compact_range_m = 30.0;
   config.terrain_rise_m = 0.25;
   config.terrain_reach_m = 0.2;
   config.merge_m = 0.5;

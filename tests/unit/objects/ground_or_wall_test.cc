@@ -51,9 +51,11 @@ Truth truth(const ScanWorld& world, const SurfacePoint& point) {
 
 // Two seconds to warm up, four that count. stands_on: slope under the feet; the body follows it.
 Share watch(const ScanWorld& world, double x, double stands_on, double pitch_rad,
-            double speed_m_s = 0) {
+            double speed_m_s = 0, double compact_range_m = test::config().compact_range_m) {
   const auto part = std::make_unique<GroundOrWall>();
-  part->reset(test::config());
+  ObjectsConfig config = test::config();
+  config.compact_range_m = compact_range_m;
+  part->reset(config);
   const auto points = std::make_unique<SurfacePoints>();
   const auto obstacles = std::make_unique<SurfacePoints>();
   const auto grounds = std::make_unique<SurfacePoints>();
@@ -134,6 +136,15 @@ TEST(GroundOrWall, WithoutPitchingAWallIsFoundFromNearby) {
   EXPECT_EQ(watch(world, 0, 0, 0).missed(), 0);
 }
 
+TEST(GroundOrWall, APostFarAwayWaitsForASignOfItsHeight) {
+  ScanWorld world;
+  world.posts.push_back({{8, 0}, 0.2, 20});
+  EXPECT_EQ(watch(world, 0, 0, 0, 0, 9.0).missed(), 0);
+  EXPECT_EQ(watch(world, 0, 0, 0, 0, 5.0).missed(), 1);
+  EXPECT_LT(watch(world, 0, 0, kPitch_rad, 0, 5.0).missed(), 0.05);
+  EXPECT_EQ(watch(world, 3.5, 0, 0, 0, 5.0).missed(), 0);
+}
+
 TEST(GroundOrWall, TreesAreFoundOnSlopes) {
   for (const double degrees : {0.0, 5.0, 11.0}) {
     ScanWorld world;
@@ -142,11 +153,14 @@ TEST(GroundOrWall, TreesAreFoundOnSlopes) {
     for (int i = 0; i < 12; ++i) {
       world.posts.push_back({{3.0 + 0.8 * i, -6.0 + 4.9 * (i * 7 % 5) / 2}, 0.2, 50});
     }
-    const Share share = watch(world, 0, 0, kPitch_rad);
-    std::printf("trees before and on %4.1f deg: %6d returns, %.4f taken for ground; %.4f feared\n",
-                degrees, share.thing, share.missed(), share.false_obstacle());
-    EXPECT_LT(share.missed(), 0.05) << degrees;
-    EXPECT_LT(share.false_obstacle(), 0.08) << degrees;
+    for (const double compact_range_m : {30.0, 5.0}) {
+      const Share share = watch(world, 0, 0, kPitch_rad, 0, compact_range_m);
+      std::printf(
+          "trees before and on %4.1f deg: %6d returns, %.4f taken for ground, %.4f feared\n",
+          degrees, share.thing, share.missed(), share.false_obstacle());
+      EXPECT_LT(share.missed(), 0.05) << degrees;
+      EXPECT_LT(share.false_obstacle(), 0.08) << degrees;
+    }
   }
 }
 
