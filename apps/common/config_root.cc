@@ -296,6 +296,7 @@ Config load_config_parts(const RunRequest& request, const fs::path& folder, Conf
   // Also of a robot's file alone.
   if (!request.robot.empty() && std::all_of(read.begin(), read.end(), is_missing_group)) {
     check_stereo(tree, config.robot, config.autonomy.stereo, config.sim.stereo.present, read);
+    check_camera_motion(config.robot, config.autonomy, read);
   }
   take_goal_from_world(config, request.seed);
   read = without_absent_groups(std::move(read), request, issues);

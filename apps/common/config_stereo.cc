@@ -211,10 +211,6 @@ void check_stereo(const ConfigNode& tree, const robot::RobotModel& model,
   }
   if (!camera.present) return;
   if (!simulated) issues.push_back({place, "sim.stereo", "missing; the robot has a stereo camera"});
-  if (model.depth_camera.rate_Hz > 0) {
-    issues.push_back(
-        {place, "robot.depth_camera.rate_Hz", "not 0, but the map is made from the stereo camera"});
-  }
   const std::size_t before = issues.size();
   CalibrationCheck{tree, issues}.run(camera.calibration);
   if (issues.size() != before || !stereo.present) return;
@@ -230,6 +226,28 @@ void check_stereo(const ConfigNode& tree, const robot::RobotModel& model,
     issues.push_back({place_of(tree, "image_width"), kKey + ".image_width",
                       "too large: at most 640 x 480 after stereo.shrink, and 1024 with "
                       "stereo.matcher.disparities"});
+  }
+}
+
+void check_camera_motion(const robot::RobotModel& model, const autonomy::AutonomyConfig& config,
+                         ConfigIssues& issues) {
+  const auto refuse = [&](const char* key, const char* why) {
+    issues.push_back({{"--robot", 0}, key, why});
+  };
+  if (!config.visual_odometry.present) {
+    if (!model.stereo_camera.present || model.depth_camera.rate_Hz <= 0) return;
+    refuse("robot.depth_camera.rate_Hz", "not 0, but the map is made from the stereo camera");
+    return;
+  }
+  if (!model.stereo_camera.present) refuse("visual_odometry", "needs a stereo camera");
+  if (!ok(visual_odometry::validate(config.visual_odometry.camera))) {
+    refuse("visual_odometry.camera", "min_disparity_px is not below max_disparity_px");
+  }
+  if (model.tracking_camera.rate_Hz > 0) {
+    refuse("robot.tracking_camera.rate_Hz", "not 0, but the stereo camera is the odometer");
+  }
+  if (config.localisation.present) {
+    refuse("localisation", "not together with visual_odometry: both would move the estimate");
   }
 }
 

@@ -20,4 +20,8 @@ void load_stereo(ConfigNode& tree, ConfigIssues& issues);
 void check_stereo(const ConfigNode& tree, const robot::RobotModel& model,
                   const autonomy::StereoConfig& stereo, bool simulated, ConfigIssues& issues);
 
+// What keeps the stereo camera from being an odometer.
+void check_camera_motion(const robot::RobotModel& model, const autonomy::AutonomyConfig& config,
+                         ConfigIssues& issues);
+
 }  // namespace surefoot::apps

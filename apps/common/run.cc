@@ -195,6 +195,7 @@ class Run {
     facts_.map_frames_bounded = stack_.autonomy().map().counters().frames_bounded;
     facts_.stereo = executive.outputs().telemetry.stereo;
     facts_.stereo.valid_share = stack_.autonomy().stereo().mean_valid_share();
+    facts_.visual_odometry = executive.outputs().telemetry.visual_odometry;
     facts_.localisation = stack_.autonomy().localisation().counters();
     facts_.fill = stack_.autonomy().terrain().counters();
     facts_.static_walk = stack_.autonomy().static_walk().counters();

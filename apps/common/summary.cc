@@ -137,6 +137,17 @@ Json summary_json(const RunFacts& facts) {
                     {"pairs_refused", facts.stereo.pairs_refused},
                     {"pairs_unusable", facts.stereo.pairs_unusable},
                     {"valid_share", facts.stereo.valid_share}};
+  const autonomy::CameraMotionTelemetry& motion = facts.visual_odometry;
+  json["visual_odometry"] = {{"motions", motion.pairs.motions},
+                             {"first", motion.pairs.first},
+                             {"too_few_features", motion.pairs.too_few_features},
+                             {"inconsistent", motion.pairs.inconsistent},
+                             {"without_pose", motion.pairs.without_pose},
+                             {"late", motion.pairs.late},
+                             {"used", motion.motions.used},
+                             {"outliers", motion.motions.outliers},
+                             {"unmatched", motion.motions.unmatched},
+                             {"refused", motion.motions.refused}};
   const autonomy::LocalisationCounters& pictures = facts.localisation;
   json["localisation"] = {{"registered", pictures.registered},
                           {"first", pictures.first},

@@ -41,6 +41,7 @@ struct RunFacts {
   std::uint64_t map_frames_bounded = 0;
   estimation::TrackingCounters tracking;
   control::StaticWalkCounters static_walk;
+  autonomy::CameraMotionTelemetry visual_odometry;
   autonomy::LocalisationCounters localisation;
   autonomy::TerrainCounters fill;  // of the map that was published last
   autonomy::NavigationTelemetry navigation;

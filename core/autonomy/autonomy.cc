@@ -42,10 +42,11 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   if (!ok(wired)) return wired;
   const mapping::TraversabilityLimits limits = mapping::traversability_limits(
       config.mapping, model, config.control.body.height_m, config.control.swing.clearance_m);
-  const Status matched = stereo_.reset(model.stereo_camera, config.stereo);
+  const Status matched = stereo_.reset(model.stereo_camera, config.stereo, config.visual_odometry,
+                                       model.depth_camera.rate_Hz <= 0);
   if (!ok(matched)) return matched;
   trigger_.reset(config.stereo);
-  const MapCamera camera = stereo_.enabled() ? stereo_.camera() : depth_map_camera(model);
+  const MapCamera camera = maps_by_stereo() ? stereo_.camera() : depth_map_camera(model);
   const Status mapped = map_.reset(config.mapping, limits, model, camera);
   if (!ok(mapped)) return mapped;
   const Status located = localisation_.reset(config.localisation, config.mapping, model, camera);
@@ -63,6 +64,14 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
                                             .min_rise_m = rise_m > 0 ? rise_m : limits.max_step_m});
   }
   estimator_.reset(config.estimation, model, tick_s_);
+  if (config.visual_odometry.present) {
+    // One odometer at a time puts the legs right.
+    if (model.tracking_camera.rate_Hz > 0 || localisation_.enabled()) return Status::kInvalid;
+    const CameraInBody& X_BN = stereo_.camera().X_BC;
+    const Status fused =
+        estimator_.fuse_camera(config.visual_odometry.fusion, X_BN.rotation.matrix, X_BN.origin.m);
+    if (!ok(fused)) return fused;
+  }
   history_.clear();
   mission_.reset(config.mission, kBrakingShare * config.control.body.max_acceleration_m_s2);
   recovery_.reset(config.control.recovery, model, config.control.stand_up.folded_rad);
@@ -272,6 +281,7 @@ void Autonomy::begin_walking(const estimation::RobotState& state) {
   pad.half_length_m = 0.5 * config_.start_pad.length_m;
   pad.half_width_m = 0.5 * config_.start_pad.width_m;
   localisation_.forget();
+  stereo_.motion().forget();
   on_pad_ = !has_stood_;
   const bool seen_before = has_stood_;
   has_stood_ = true;
@@ -408,7 +418,10 @@ void Autonomy::watch(const estimation::RobotState& state) {
   moment.turn_rate_rad_s = math::sqrt(state.angular_velocity_B_rad_s.squaredNorm());
   moment.speed_m_s = math::sqrt(state.v_OB_m_s.squaredNorm());
   outputs_.stereo_trigger = trigger_.update(moment, tick_s_);
-  if (outputs_.stereo_trigger) ++outputs_.telemetry.stereo.triggers;
+  if (!outputs_.stereo_trigger) return;
+  ++outputs_.telemetry.stereo.triggers;
+  stereo_.motion().note_trigger(state.stamp);
+  estimator_.note_exposure(state.stamp);
 }
 
 bool Autonomy::begin_mpc(const TickInputs& inputs) {
@@ -421,12 +434,23 @@ bool Autonomy::begin_mpc(const TickInputs& inputs) {
 
 bool Autonomy::begin_stereo(const TickInputs& inputs) {
   if (!inputs.stereo_fresh || !walking_ready_) return false;
-  return stereo_.release(*inputs.stereo);
+  return stereo_.release(*inputs.stereo, history_);
 }
+
+void Autonomy::publish_stereo() {
+  stereo_.publish();
+  if (!stereo_.motion().enabled()) return;
+  const Vector3 p_OB_m = estimator_.state().p_OB_m;
+  const estimation::DriftCorrection off = estimator_.observe_motion(stereo_.motion().publish());
+  history_.move({p_OB_m, off.shift_O_m, off.yaw_rad});
+}
+
+// A depth camera sees the ground better; the stereo camera then is an odometer only.
+bool Autonomy::maps_by_stereo() const { return stereo_.enabled() && stereo_.maps(); }
 
 // What the robot's eyes have made of the ground in this tick, once; frame null: nothing.
 Autonomy::Sight Autonomy::take_sight(const TickInputs& inputs) {
-  if (!stereo_.enabled()) return {inputs.depth_fresh ? inputs.depth : nullptr, nullptr};
+  if (!maps_by_stereo()) return {inputs.depth_fresh ? inputs.depth : nullptr, nullptr};
   const StereoPicture* const picture = stereo_.take();
   if (picture == nullptr) return {};
   return {&picture->depth, &picture->noise};

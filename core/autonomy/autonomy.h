@@ -57,10 +57,10 @@ class Autonomy {
   void publish_mpc() { mpc_.publish(); }
 
   // The stereo task: what it publishes the localisation task, or else the mapping task, takes in
-  // the same tick.
+  // the same tick. Publishing moves the estimate where the camera is an odometer.
   bool begin_stereo(const TickInputs& inputs);
   void run_stereo() { stereo_.run(); }
-  void publish_stereo() { stereo_.publish(); }
+  void publish_stereo();
 
   // The localisation task: likewise for the mapping task. Publishing moves the estimate.
   bool begin_localisation(const TickInputs& inputs);
@@ -141,6 +141,7 @@ class Autonomy {
     const hal::DepthFrame* frame = nullptr;
     const mapping::DepthNoise* noise = nullptr;  // null: the sensor's
   };
+  bool maps_by_stereo() const;
   Sight take_sight(const TickInputs& inputs);
 
   robot::RobotModel model_;

@@ -90,6 +90,10 @@ void Autonomy::report_stereo() {
   telemetry.pairs_refused = stereo_.counters().pairs_refused;
   telemetry.pairs_unusable = stereo_.counters().pairs_unusable;
   telemetry.valid_share = stereo_.valid_share();
+  CameraMotionTelemetry& motion = outputs_.telemetry.visual_odometry;
+  motion.pairs = stereo_.motion().counters();
+  motion.motions = estimator_.fusion().counters();
+  motion.inliers = stereo_.motion().inliers();
 }
 
 void Autonomy::report_localisation() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/actuation/joint_bus.h"
+#include "core/autonomy/camera_motion_config.h"
 #include "core/autonomy/jump_pilot_config.h"
 #include "core/autonomy/localisation_config.h"
 #include "core/autonomy/navigation_config.h"
@@ -150,11 +151,12 @@ struct AutonomyConfig {
   StartPadConfig start_pad;
   motions::JumpConfig jump;
   JumpPilotConfig jump_pilot;
-  motions::MotionLibrary motions;   // none where the mission does not jump
-  StereoConfig stereo;              // where the robot has a stereo camera
-  LocalisationConfig localisation;  // where pictures are registered with each other
-  TerrainConfig terrain;            // where footsteps are planned on completed ground
-  NavigationTaskConfig navigation;  // where the robot has a laser scanner
+  motions::MotionLibrary motions;      // none where the mission does not jump
+  StereoConfig stereo;                 // where the robot has a stereo camera
+  CameraMotionConfig visual_odometry;  // where that camera is an odometer too
+  LocalisationConfig localisation;     // where pictures are registered with each other
+  TerrainConfig terrain;               // where footsteps are planned on completed ground
+  NavigationTaskConfig navigation;     // where the robot has a laser scanner
   MissionConfig mission;
 
   template <class Self, class Visitor>
@@ -170,6 +172,7 @@ struct AutonomyConfig {
     visit.group("jump_pilot", self.jump_pilot);
     visit.list("motions", self.motions);
     visit.optional("stereo", self.stereo);
+    visit.optional("visual_odometry", self.visual_odometry);
     visit.optional("localisation", self.localisation);
     visit.optional("terrain", self.terrain);
     visit.optional("navigation", self.navigation);

@@ -61,15 +61,16 @@ bool StereoTrigger::update(const StereoMoment& moment, double step_s) {
   return true;
 }
 
-Status StereoTask::reset(const robot::StereoCameraSpecification& camera,
-                         const StereoConfig& config) {
+Status StereoTask::reset(const robot::StereoCameraSpecification& camera, const StereoConfig& config,
+                         const CameraMotionConfig& motion, bool maps) {
   enabled_ = false;
+  maps_ = maps;
   counters_ = StereoCounters{};
   valid_share_ = 0;
   valid_share_sum_ = 0;
   fresh_ = false;
   working_ = 0;
-  if (!camera.present) return Status::kOk;
+  if (!camera.present) return motion.present ? Status::kInvalid : Status::kOk;
   const Status planned = plan_stereo(camera, config, plan_);
   if (!ok(planned)) return planned;
   config_ = config;
@@ -82,6 +83,8 @@ Status StereoTask::reset(const robot::StereoCameraSpecification& camera,
   camera_.sensor.min_range_m = camera.min_range_m;
   camera_.sensor.max_range_m = camera.max_range_m;
   depth_unit_m_ = camera.max_range_m / kDepthSteps;
+  const Status moves = motion_.reset(motion, plan_.pair, camera_.X_BC);
+  if (!ok(moves)) return moves;
   enabled_ = true;
   warm_up();
   return Status::kOk;
@@ -100,7 +103,7 @@ void StereoTask::warm_up() {
   working_share_ = 0;
 }
 
-bool StereoTask::release(const hal::StereoFrame& pair) {
+bool StereoTask::release(const hal::StereoFrame& pair, const PoseHistory& history) {
   if (!enabled_) return false;
   if (pair.width_px != plan_.calibration.left.width_px ||
       pair.height_px != plan_.calibration.left.height_px) {
@@ -108,6 +111,7 @@ bool StereoTask::release(const hal::StereoFrame& pair) {
     return false;
   }
   pair_.assign(pair);
+  motion_.release(pair.stamp, history);
   return true;
 }
 
@@ -115,8 +119,10 @@ void StereoTask::run() {
   const stereo::GreyView left{pair_.left.data(), pair_.width_px, pair_.height_px};
   const stereo::GreyView right{pair_.right.data(), pair_.width_px, pair_.height_px};
   SUREFOOT_ASSERT(ok(rectifier_.run(left, right, left_, right_)));
+  if (!maps_) return motion_.run(left_.view(), right_.view(), nullptr);
   SUREFOOT_ASSERT(ok(matcher_.match(left_.view(), right_.view(), disparities_)));
   rectifier_.clear_unseen(kWindow_px, disparities_);
+  motion_.run(left_.view(), right_.view(), &disparities_);
   fill(pictures_[working_]);
 }
 
@@ -156,6 +162,7 @@ void StereoTask::fill(StereoPicture& picture) {
 
 void StereoTask::publish() {
   ++counters_.pairs_matched;
+  if (!maps_) return;
   valid_share_ = working_share_;
   valid_share_sum_ += working_share_;
   fresh_ = pictures_[working_].usable;

@@ -1,13 +1,15 @@
 // The stereo task: slow, released by a pair. Rectifies, matches and makes a picture of depth with
 // the noise of every pixel, which the mapping task then takes as it takes a depth camera's frame.
-// Also decides when the camera exposes.
+// Also finds the camera's motion from the same pictures (camera_motion.h) and decides when the
+// camera exposes.
 //
-// Memory: sizeof(StereoTask) 24 MB, for pictures up to the port's capacity. Nothing allocates.
+// Memory: sizeof(StereoTask) 26 MB, for pictures up to the port's capacity. Nothing allocates.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
+#include "core/autonomy/camera_motion.h"
 #include "core/autonomy/map_task.h"
 #include "core/autonomy/stereo_config.h"
 #include "core/mapping/depth_image.h"
@@ -56,7 +58,7 @@ class StereoTrigger {
 };
 
 struct StereoCounters {
-  std::uint64_t pairs_matched = 0;
+  std::uint64_t pairs_matched = 0;   // or only looked at for the motion
   std::uint64_t pairs_refused = 0;   // another size than the calibration's
   std::uint64_t pairs_unusable = 0;  // too few disparities
 };
@@ -71,14 +73,17 @@ struct StereoPicture {
 class StereoTask {
  public:
   // Without a camera the task does nothing. Otherwise see plan_stereo(); matches an empty pair, so
-  // that every page it will use has been touched.
-  Status reset(const robot::StereoCameraSpecification& camera, const StereoConfig& config);
+  // that every page it will use has been touched. motion: see CameraMotion::reset(). maps: pairs
+  // become pictures of depth; else they are not matched, and the camera is an odometer only.
+  Status reset(const robot::StereoCameraSpecification& camera, const StereoConfig& config,
+               const CameraMotionConfig& motion, bool maps);
   bool enabled() const { return enabled_; }
+  bool maps() const { return maps_; }
   // Frame C is the rectified left camera. Only where enabled.
   const MapCamera& camera() const { return camera_; }
 
   // Copies the pair. false: it is of another size than the calibration (counted).
-  bool release(const hal::StereoFrame& pair);
+  bool release(const hal::StereoFrame& pair, const PoseHistory& history);
   // May run anywhere between release and publish.
   void run();
   void publish();
@@ -86,6 +91,8 @@ class StereoTask {
   // The picture published last, once; null: taken, or unusable, or none yet.
   const StereoPicture* take();
 
+  CameraMotion& motion() { return motion_; }
+  const CameraMotion& motion() const { return motion_; }
   const StereoCounters& counters() const { return counters_; }
   double valid_share() const { return valid_share_; }
   double mean_valid_share() const;
@@ -95,6 +102,7 @@ class StereoTask {
   void warm_up();
 
   bool enabled_ = false;
+  bool maps_ = false;
   StereoConfig config_;
   StereoPlan plan_;
   MapCamera camera_;
@@ -105,6 +113,7 @@ class StereoTask {
   stereo::GreyImage right_;
   stereo::Matcher matcher_;
   stereo::DisparityImage disparities_;
+  CameraMotion motion_;
   std::array<StereoPicture, 2> pictures_{};  // one is written by run(), the other is published
   std::size_t working_ = 0;
   double working_share_ = 0;

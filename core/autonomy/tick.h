@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/autonomy/camera_motion_counters.h"
 #include "core/autonomy/jump_pilot.h"
 #include "core/autonomy/localisation_counters.h"
 #include "core/autonomy/object_task_counters.h"
@@ -12,6 +13,7 @@
 #include "core/base/fixed_vector.h"
 #include "core/base/time.h"
 #include "core/control/foothold_reason.h"
+#include "core/estimation/odometry_fusion.h"
 #include "core/estimation/tracking.h"
 #include "core/navigation/status.h"
 #include "core/obstacles/field_pool.h"
@@ -244,6 +246,20 @@ struct NavigationTelemetry {
   }
 };
 
+// The stereo camera as an odometer.
+struct CameraMotionTelemetry {
+  CameraMotionCounters pairs;
+  estimation::FusionCounters motions;
+  std::int32_t inliers = 0;  // of the newest pair
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("pairs", self.pairs);
+    visit("motions", self.motions);
+    visit("inliers", self.inliers);
+  }
+};
+
 // The jump pilot: what it does, and the edge it looks at.
 struct JumpTelemetry {
   PilotStage pilot = PilotStage::kWatch;
@@ -281,6 +297,7 @@ struct Telemetry {
   ObstacleTelemetry obstacles;
   JumpTelemetry jump;
   StereoTelemetry stereo;
+  CameraMotionTelemetry visual_odometry;
   LocalisationTelemetry localisation;
   TerrainTelemetry terrain;
   NavigationTelemetry navigation;
@@ -304,6 +321,7 @@ struct Telemetry {
     visit("obstacles", self.obstacles);
     visit("jump", self.jump);
     visit("stereo", self.stereo);
+    visit("visual_odometry", self.visual_odometry);
     visit("localisation", self.localisation);
     visit("terrain", self.terrain);
     visit("navigation", self.navigation);

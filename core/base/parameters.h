@@ -22,6 +22,8 @@
 // so that what runs is what the files say.
 #pragma once
 
+#include <cstddef>
+
 namespace surefoot {
 
 // Closed interval of allowed values, in the unit of the key.

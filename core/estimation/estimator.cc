@@ -4,6 +4,12 @@
 #include "core/robot/kinematics.h"
 
 namespace surefoot::estimation {
+namespace {
+
+// The accelerometer carries the legs' velocity over a flight phase, for so long.
+constexpr double kFlight_s = 0.1;
+
+}  // namespace
 
 void Estimator::reset(const EstimationConfig& config, const robot::RobotModel& model,
                       double tick_s) {
@@ -15,6 +21,7 @@ void Estimator::reset(const EstimationConfig& config, const robot::RobotModel& m
   camera_ = CameraMount(model.tracking_camera);
   drift_.reset(config.tracking);
   relocation_.reset();
+  fuses_ = false;
   has_gait_ = false;
   gait_ = hal::GaitSample{};
   state_ = RobotState{};
@@ -23,6 +30,8 @@ void Estimator::reset(const EstimationConfig& config, const robot::RobotModel& m
 void Estimator::place(const Vector3& p_OB_m) {
   body_.initialise(p_OB_m);
   drift_.restart();
+  if (fuses_) fusion_.place(p_OB_m, state_.yaw_rad);
+  fused_O_m_ = p_OB_m;
   state_.p_OB_m = p_OB_m;
   state_.v_OB_m_s.setZero();
   place_feet();
@@ -33,6 +42,10 @@ void Estimator::set_yaw(double yaw_rad) {
   state_.q_OB = attitude_.q_OB();
   state_.R_OB = attitude_.R_OB();
   state_.yaw_rad = yaw_rad;
+  if (fuses_) {
+    fusion_.give_attitude(state_.R_OB);
+    fusion_.place(state_.p_OB_m, yaw_rad);
+  }
   place_feet();
 }
 
@@ -51,6 +64,55 @@ void Estimator::level_on_pad(double share) {
 void Estimator::shift(const Vector3& shift_O_m, double yaw_rad) {
   attitude_.correct_yaw(yaw_rad, 0.0);
   body_.move(shift_O_m, yaw_rad);
+}
+
+Status Estimator::fuse_camera(const FusionConfig& config, const Matrix3& R_BN,
+                              const Vector3& p_BN_m) {
+  const Status configured = fusion_.configure(config, R_BN, p_BN_m);
+  fuses_ = ok(configured);
+  return configured;
+}
+
+// How the trunk has moved in this tick by the legs. What feet in contact agree on is better than
+// the velocity that the filter makes of it.
+LegOdometry Estimator::leg_odometry() {
+  LegOdometry legs;
+  uncarried_s_ = body_.carried() ? 0.0 : uncarried_s_ + tick_s_;
+  legs.valid = uncarried_s_ < kFlight_s;
+  legs.v_B_m_s = state_.R_OB.transpose() * (body_.p_OB_m() - fused_O_m_) / tick_s_;
+  int contacts = 0;
+  for (const FootState& foot : state_.feet) contacts += foot.in_contact;
+  const auto slipping = static_cast<double>(body_.slips() - slips_);
+  slips_ = body_.slips();
+  if (contacts > 0) legs.slip = math::clamp(slipping / contacts, 0.0, 1.0);
+  return legs;
+}
+
+void Estimator::fuse(const LegOdometry& legs) {
+  // Both are finite, the attitude is one: refusals are a defect here.
+  SUREFOOT_ASSERT(ok(fusion_.update(state_.R_OB, legs, tick_s_)));
+  static_cast<void>(follow_fusion());
+}
+
+// Attitude and body state go where the fusion is.
+DriftCorrection Estimator::follow_fusion() {
+  DriftCorrection correction;
+  correction.shift_O_m = fusion_.p_OB_m() - body_.p_OB_m();
+  correction.yaw_rad = fusion_.yaw_offset_rad();
+  shift(correction.shift_O_m, correction.yaw_rad);
+  fusion_.give_attitude(attitude_.R_OB());
+  fused_O_m_ = body_.p_OB_m();
+  return correction;
+}
+
+void Estimator::note_exposure(TimeNs tick) {
+  if (fuses_) fusion_.note_exposure(tick);
+}
+
+DriftCorrection Estimator::observe_motion(const VisualMotion& motion) {
+  if (!fuses_) return {};
+  if (!ok(fusion_.observe(motion))) return {};
+  return follow_fusion();
 }
 
 void Estimator::place_feet() {
@@ -84,6 +146,7 @@ std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
       state_.R_OB * attitude_.specific_force_B_m_s2() - Vector3(0.0, 0.0, kGravity_m_s2);
   body_.update(acceleration_O, observations_, tick_s_);
   attitude_.level_by_feet(body_.correction_O_m_s());
+  if (fuses_) fuse(leg_odometry());
 
   state_.p_OB_m = body_.p_OB_m();
   state_.v_OB_m_s = body_.v_OB_m_s();
@@ -107,6 +170,13 @@ std::size_t Estimator::update(TimeNs stamp, std::span<const hal::ImuSample> imu,
     gait_ = sample;
     has_gait_ = true;
     if (attitude_.initialised()) body_.carry(state_.R_OB * v_B_m_s, since_s);
+  }
+  if (fuses_ && attitude_.initialised() && has_gait_) {
+    LegOdometry legs;
+    legs.valid = (stamp - gait_.stamp).seconds() < kFlight_s;
+    legs.v_B_m_s =
+        Vector3(gait_.velocity_B_m_s[0], gait_.velocity_B_m_s[1], gait_.velocity_B_m_s[2]);
+    fuse(legs);
   }
   state_.p_OB_m = body_.p_OB_m();
   state_.v_OB_m_s = body_.v_OB_m_s();

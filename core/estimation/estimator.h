@@ -1,5 +1,7 @@
 // The state estimator: attitude, contacts, position and velocity, once per tick, from IMU samples
-// and joint states; a tracking camera, where there is one, takes the drift out slowly.
+// and joint states; a tracking camera, where there is one, takes the drift out slowly. Where a
+// stereo camera is an odometer, place and heading are the fusion's (odometry_fusion.h) of legs and
+// camera: what it corrects is moved into attitude and body state at once, so that there is one O.
 #pragma once
 
 #include <array>
@@ -10,6 +12,7 @@
 #include "core/estimation/body_state.h"
 #include "core/estimation/config.h"
 #include "core/estimation/contact.h"
+#include "core/estimation/odometry_fusion.h"
 #include "core/estimation/relocation.h"
 #include "core/estimation/tracking.h"
 #include "core/geometry/frames.h"
@@ -62,6 +65,14 @@ class Estimator {
   // DriftEstimator::check(), nothing changed but the counters then.
   Status observe_pose(const hal::PoseSample& sample, const Result<PoseAtStamp>& own);
 
+  // From here on legs and stereo camera are fused. kInvalid: see OdometryFusion::configure().
+  Status fuse_camera(const FusionConfig& config, const Matrix3& R_BN, const Vector3& p_BN_m);
+  // In the tick that asks for an exposure, after update().
+  void note_exposure(TimeNs tick);
+  // The motion up to that exposure: how far the pose was off that this estimator believed in, which
+  // is put right already. Zero if the motion was not used (fusion().counters()).
+  DriftCorrection observe_motion(const VisualMotion& motion);
+
   // The robot has fallen; its pose was right at `trusted`.
   void note_fall(TimeNs trusted) { relocation_.pin(trusted); }
   // It stands again: where and which way, by the camera. kUnavailable: the camera cannot tell,
@@ -85,6 +96,7 @@ class Estimator {
 
   const RobotState& state() const { return state_; }
   const DriftEstimator& drift() const { return drift_; }
+  const OdometryFusion& fusion() const { return fusion_; }
   bool ready() const { return attitude_.initialised(); }
   // The newest sample of a body with gaits of its own; null: none yet.
   const hal::GaitSample* gait() const { return has_gait_ ? &gait_ : nullptr; }
@@ -93,6 +105,9 @@ class Estimator {
  private:
   std::size_t observe_attitude(std::span<const hal::ImuSample> imu, bool lying_still, bool carried);
   void observe_feet();
+  LegOdometry leg_odometry();
+  void fuse(const LegOdometry& legs);
+  DriftCorrection follow_fusion();
   void place_feet();
   void decide_contacts(const std::array<GaitPhase, robot::kLegs>& gait);
 
@@ -104,6 +119,11 @@ class Estimator {
   CameraMount camera_;
   DriftEstimator drift_;
   Relocation relocation_;
+  bool fuses_ = false;
+  OdometryFusion fusion_;
+  Vector3 fused_O_m_ = Vector3::Zero();  // where the fusion had put the trunk after the last tick
+  std::uint64_t slips_ = 0;              // of the body state, up to the last tick
+  double uncarried_s_ = 0;               // no foot carries
   std::array<FootObservation, robot::kLegs> observations_;
   bool has_gait_ = false;
   hal::GaitSample gait_;

@@ -25,9 +25,10 @@
 // sqrt(share) L common + noise of covariance (1 - share) C, C = L L': what the keyframe's
 // disparities are off by is the same in every motion from it and must not be averaged away.
 //
-// How the Estimator will call it:
+// How the Estimator calls it:
 //   update()          each tick, with its R_OB and what its feet say of the velocity
-//   note_exposure()   in the tick in which the camera exposes, with the exposure's stamp
+//   give_attitude()   when it has taken over what was corrected of the yaw
+//   note_exposure()   in the tick that asks the camera to expose, with the tick's stamp
 //   observe()         when visual odometry has finished that picture
 //
 // Cost per tick: eight rows and columns of a 24 x 24 covariance; per motion about 15,000
@@ -89,6 +90,10 @@ class OdometryFusion {
   // R_OB: attitude by the IMU, its yaw integrated from the gyro. step_s > 0. kInvalid: not finite
   // or not a rotation; nothing changed. Without legs the last velocity is kept, and trusted less.
   Status update(const Matrix3& R_OB, const LegOdometry& legs, double step_s);
+
+  // Whoever gives the attitude has turned it about up since: the pose stays as it is,
+  // yaw_offset_rad() becomes what is left of it. R_OB as in update().
+  void give_attitude(const Matrix3& R_OB);
 
   // The camera exposes now: this pose will be asked for. An older exposure that has not been
   // observed is forgotten.

@@ -6,7 +6,10 @@
 #include "core/stereo/matcher.h"
 #include "core/stereo/point_cloud.h"
 #include "core/stereo/rectifier.h"
+#include "core/visual_odometry/visual_odometry.h"
 #include "tests/support/stereo_setup.h"
+#include "tests/support/textured_scene.h"
+#include "tests/support/visual_odometry_setup.h"
 #include "tests/timing/work_case.h"
 
 namespace surefoot::timing {
@@ -110,7 +113,7 @@ class StereoTaskCase final : public WorkCase {
     apps::ConfigIssues issues;
     const apps::Config config = apps::load_config(request, SUREFOOT_SOURCE_DIR "/config", issues);
     SUREFOOT_ASSERT(issues.empty());
-    SUREFOOT_ASSERT(ok(task_.reset(config.robot.stereo_camera, config.autonomy.stereo)));
+    SUREFOOT_ASSERT(ok(task_.reset(config.robot.stereo_camera, config.autonomy.stereo, {}, true)));
     pair_.width_px = kWidth_px;
     pair_.height_px = kHeight_px;
     // Columns of a coarse random pattern: what lenses and turn move from row to row, and by parts
@@ -130,7 +133,7 @@ class StereoTaskCase final : public WorkCase {
         if (u >= kNear_px) pair_.right[v * kWidth_px + u - kNear_px] = grey;
       }
     }
-    SUREFOOT_ASSERT(task_.release(pair_));
+    SUREFOOT_ASSERT(task_.release(pair_, autonomy::PoseHistory{}));
     return true;
   }
   void run() override {
@@ -144,6 +147,49 @@ class StereoTaskCase final : public WorkCase {
   hal::StereoFrame pair_;
 };
 
+// A pair after the keyframe's, 10 cm farther on: disparities by the right picture, match, clique,
+// tracking, motion.
+class VisualOdometryCase final : public WorkCase {
+ public:
+  bool prepare(std::size_t round) override {
+    if (round > 0) return false;
+    SUREFOOT_ASSERT(ok(odometry_.configure(tests::recommended_visual_odometry(), pair_)));
+    const tests::StereoPictures first = render(0.0);
+    second_ = render(kStep_m);
+    SUREFOOT_ASSERT(ok(odometry_.update(seen(first, 1), {}, motion_)));
+    prediction_.p_PN_m = start().R_WN.transpose() * Vector3(kStep_m, 0, 0);
+    return true;
+  }
+  void run() override {
+    SUREFOOT_ASSERT(ok(odometry_.update(seen(second_, 2), prediction_, motion_)));
+  }
+  bool did_the_work() override {
+    return motion_.status == visual_odometry::MotionStatus::kOk && motion_.inliers > 100;
+  }
+
+ private:
+  static constexpr double kStep_m = 0.1;
+
+  static tests::CameraPlace start() {
+    return tests::walking_camera(Vector3(0, 0, 0.45), 0.0, 0.5, 0.0);
+  }
+  tests::StereoPictures render(double x_m) const {
+    tests::CameraPlace place = start();
+    place.p_WN_m[0] += x_m;
+    return scene_.render(pair_, place, tests::Exposure{});
+  }
+  static visual_odometry::Pictures seen(const tests::StereoPictures& pictures, int second) {
+    return {milliseconds(1000 * second), pictures.left_view(), pictures.right_view(), nullptr};
+  }
+
+  stereo::RectifiedPair pair_ = tests::small_pair();
+  tests::TexturedScene scene_{1, 160, 12};
+  tests::StereoPictures second_;
+  visual_odometry::VisualOdometry odometry_;
+  visual_odometry::Prediction prediction_;
+  visual_odometry::Motion motion_;
+};
+
 template <class Case>
 std::unique_ptr<WorkCase> make() {
   return std::make_unique<Case>();
@@ -155,6 +201,8 @@ const WorkEntry kStereoCases[] = {
     {"stereo_match", "matching, 320 x 240 pixels, 64 disparities, all matched", make<StereoMatch>},
     {"stereo_rest", "rectification and points of such a pair", make<StereoRest>},
     {"stereo_task", "the stereo task: LittleDog's pair, 112 disparities", make<StereoTaskCase>},
+    {"visual_odometry", "a pair's motion from its keyframe, 320 x 240 pixels",
+     make<VisualOdometryCase>},
     {nullptr, nullptr, nullptr}};
 
 }  // namespace surefoot::timing

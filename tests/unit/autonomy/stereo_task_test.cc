@@ -86,29 +86,29 @@ TEST(StereoTrigger, EveryPeriodAndAfterAShift) {
 
 TEST(StereoTask, WithoutACameraItDoesNothing) {
   const auto task = std::make_unique<StereoTask>();
-  EXPECT_EQ(task->reset({}, {}), Status::kOk);
+  EXPECT_EQ(task->reset({}, {}, {}, true), Status::kOk);
   EXPECT_FALSE(task->enabled());
-  EXPECT_FALSE(task->release(*textured_pair()));
+  EXPECT_FALSE(task->release(*textured_pair(), {}));
 }
 
 TEST(StereoTask, RefusesWhatCannotBeMatched) {
   const auto task = std::make_unique<StereoTask>();
   robot::StereoCameraSpecification broken = camera();
   broken.calibration.p_EV_m = {};
-  EXPECT_EQ(task->reset(broken, config()), Status::kOutOfRange);
+  EXPECT_EQ(task->reset(broken, config(), {}, true), Status::kOutOfRange);
   broken = camera();
   broken.calibration.width_px = 1024;
-  EXPECT_EQ(task->reset(broken, config()), Status::kExhausted);
+  EXPECT_EQ(task->reset(broken, config(), {}, true), Status::kExhausted);
   StereoConfig wrong = config();
   wrong.matcher.disparities = 40;
-  EXPECT_EQ(task->reset(camera(), wrong), Status::kInvalid);
+  EXPECT_EQ(task->reset(camera(), wrong, {}, true), Status::kInvalid);
 }
 
 TEST(StereoTask, APairBecomesAPictureOfDepthOnce) {
   const auto task = std::make_unique<StereoTask>();
-  ASSERT_EQ(task->reset(camera(), config()), Status::kOk);
+  ASSERT_EQ(task->reset(camera(), config(), {}, true), Status::kOk);
   EXPECT_EQ(task->take(), nullptr);
-  ASSERT_TRUE(task->release(*textured_pair()));
+  ASSERT_TRUE(task->release(*textured_pair(), {}));
   task->run();
   EXPECT_EQ(task->take(), nullptr);
   task->publish();
@@ -168,8 +168,8 @@ int fattened(std::uint8_t rim_px) {
   StereoConfig settings = config();
   settings.rim_px = rim_px;
   const auto task = std::make_unique<StereoTask>();
-  EXPECT_EQ(task->reset(camera(), settings), Status::kOk);
-  EXPECT_TRUE(task->release(*pair_with_square(kFrom, kTo)));
+  EXPECT_EQ(task->reset(camera(), settings, {}, true), Status::kOk);
+  EXPECT_TRUE(task->release(*pair_with_square(kFrom, kTo), {}));
   task->run();
   task->publish();
   const StereoPicture* const picture = task->take();
@@ -199,19 +199,19 @@ TEST(StereoTask, TheRimOfWhatStandsInFrontIsLeftOut) {
 
 TEST(StereoTask, ABlindPairMapsNothingAndIsCounted) {
   const auto task = std::make_unique<StereoTask>();
-  ASSERT_EQ(task->reset(camera(), config()), Status::kOk);
+  ASSERT_EQ(task->reset(camera(), config(), {}, true), Status::kOk);
   auto pair = std::make_unique<hal::StereoFrame>();
   pair->width_px = kWidth_px;
   pair->height_px = kHeight_px;
   pair->left.fill(120);
   pair->right.fill(120);
-  ASSERT_TRUE(task->release(*pair));
+  ASSERT_TRUE(task->release(*pair, {}));
   task->run();
   task->publish();
   EXPECT_EQ(task->take(), nullptr);
   EXPECT_EQ(task->counters().pairs_unusable, 1u);
   pair->width_px = 100;
-  EXPECT_FALSE(task->release(*pair));
+  EXPECT_FALSE(task->release(*pair, {}));
   EXPECT_EQ(task->counters().pairs_refused, 1u);
 }
 
