@@ -150,7 +150,7 @@ void StereoTask::fill(StereoPicture& picture) {
       if (z_m < camera_.sensor.min_range_m || z_m > camera_.sensor.max_range_m) continue;
       if (is_foreground_rim(disparities_, u, v, config_.rim_px, config_.rim_step_px)) continue;
       const double sigma_px = math::sqrt(disparity_variance_px2(disparities_, u, v, config_.noise));
-      picture.depth.depth[i] = static_cast<std::uint16_t>(z_m / unit_m + 0.5);
+      picture.depth.depth[i] = static_cast<std::uint16_t>(math::floor_of(z_m / unit_m + 0.5));
       picture.noise.factors[i] =
           static_cast<std::uint16_t>(std::min(sigma_px * per_sigma + 0.5, 65535.0));
       ++valid;

@@ -38,11 +38,12 @@ void CostMap::reset(const NavigationConfig& config) {
   reach_ = std::min(kMaxReach, math::floor_of(fall_off_reach_m_ / cell_m_) + 1);
   const std::int32_t side = 2 * reach_ + 1;
   for (std::int32_t place = 0; place < kPlaces * kPlaces; ++place) {
+    const std::int32_t place_row = place / kPlaces;
     const Vector2 p_m((place % kPlaces + 0.5) / kPlaces * cell_m_,
-                      (place / kPlaces + 0.5) / kPlaces * cell_m_);
+                      (place_row + 0.5) / kPlaces * cell_m_);
     for (std::int32_t i = 0; i < side * side; ++i) {
-      const Vector2 centre_m((i % side - reach_ + 0.5) * cell_m_,
-                             (i / side - reach_ + 0.5) * cell_m_);
+      const std::int32_t row = i / side;
+      const Vector2 centre_m((i % side - reach_ + 0.5) * cell_m_, (row - reach_ + 0.5) * cell_m_);
       kernels_[static_cast<std::size_t>(place)][static_cast<std::size_t>(i)] =
           kernel_cost(math::sqrt((centre_m - p_m).squaredNorm()));
     }

@@ -174,8 +174,9 @@ void PathFollower::measure_free_way(const RobotPose& robot, const objects::Objec
       const double x = (p_O_m[0] - corridor_corner_O_m_[0]) * (1.0 / kGridCell_m);
       const double y = (p_O_m[1] - corridor_corner_O_m_[1]) * (1.0 / kGridCell_m);
       if (!(x >= 0 && y >= 0 && x < kGridSide && y < kGridSide)) continue;
-      const std::uint8_t number = corridor_[static_cast<std::size_t>(
-          static_cast<std::int32_t>(y) * kGridSide + static_cast<std::int32_t>(x))];
+      const std::int32_t cell =
+          static_cast<std::int32_t>(y) * kGridSide + static_cast<std::int32_t>(x);
+      const std::uint8_t number = corridor_[static_cast<std::size_t>(cell)];
       if (number == kClear || corridor_O_m_[number].way_m - kDiscStep_m > touch_m) continue;
       // Too near already: no obstacle for a way that leads off.
       const Vector2 from_robot = p_O_m - robot.p_O_m;

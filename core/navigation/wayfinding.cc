@@ -25,7 +25,7 @@ std::uint32_t at(std::int32_t x, std::int32_t y) {
 }  // namespace
 
 void WayField::weigh(double unknown_factor, bool lenient) {
-  const auto unknown = static_cast<std::uint16_t>(kSeenCost * unknown_factor + 0.5);
+  const auto unknown = static_cast<std::uint16_t>(math::floor_of(kSeenCost * unknown_factor + 0.5));
   for (std::int32_t y = 0; y < kWaySide; ++y) {
     for (std::int32_t x = 0; x < kWaySide; ++x) {
       ground_[at(x, y)] = memory_->ground({low_.x + x, low_.y + y});

@@ -22,8 +22,9 @@ double correlate(const Patch& patch, const stereo::GreyView& picture, int u, int
   for (int dv = -kCompareRadius_px; dv <= kCompareRadius_px; ++dv) {
     const std::uint8_t* seen =
         picture.row(static_cast<std::size_t>(v + dv)) + (u - kCompareRadius_px);
-    const std::uint8_t* own = patch.grey.data() + (dv + kStoreRadius_px) * kStoreSide_px +
-                              kStoreRadius_px - kCompareRadius_px;
+    const auto row = static_cast<std::size_t>(dv + kStoreRadius_px);
+    const std::uint8_t* own =
+        patch.grey.data() + row * kStoreSide_px + kStoreRadius_px - kCompareRadius_px;
     for (int i = 0; i < kCompareSide_px; ++i) {
       sum += seen[i];
       squares += seen[i] * seen[i];

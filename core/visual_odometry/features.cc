@@ -52,7 +52,8 @@ void take_patch(const stereo::GreyView& picture, int u_px, int v_px, Patch& out)
   for (int dv = -kStoreRadius_px; dv <= kStoreRadius_px; ++dv) {
     const std::uint8_t* from =
         picture.row(static_cast<std::size_t>(v_px + dv)) + (u_px - kStoreRadius_px);
-    std::copy_n(from, kStoreSide_px, out.grey.data() + (dv + kStoreRadius_px) * kStoreSide_px);
+    const auto row = static_cast<std::size_t>(dv + kStoreRadius_px);
+    std::copy_n(from, kStoreSide_px, out.grey.data() + row * kStoreSide_px);
   }
   std::int32_t sum = 0;
   std::int32_t squares = 0;

@@ -28,8 +28,8 @@ struct Patch {
 
   // (0, 0) is the middle.
   std::uint8_t at(int du, int dv) const {
-    return grey[static_cast<std::size_t>((dv + kStoreRadius_px) * kStoreSide_px + du +
-                                         kStoreRadius_px)];
+    const auto row = static_cast<std::size_t>(dv + kStoreRadius_px);
+    return grey[row * kStoreSide_px + static_cast<std::size_t>(du + kStoreRadius_px)];
   }
 };
 
