@@ -42,11 +42,12 @@ Status Autonomy::reset(const robot::RobotModel& model, const AutonomyConfig& con
   if (!ok(wired)) return wired;
   const mapping::TraversabilityLimits limits = mapping::traversability_limits(
       config.mapping, model, config.control.body.height_m, config.control.swing.clearance_m);
+  // A depth camera sees the ground better; beside it a stereo camera is an odometer only.
   const Status matched = stereo_.reset(model.stereo_camera, config.stereo, config.visual_odometry,
                                        model.depth_camera.rate_Hz <= 0);
   if (!ok(matched)) return matched;
   trigger_.reset(config.stereo);
-  const MapCamera camera = maps_by_stereo() ? stereo_.camera() : depth_map_camera(model);
+  const MapCamera camera = stereo_.maps() ? stereo_.camera() : depth_map_camera(model);
   const Status mapped = map_.reset(config.mapping, limits, model, camera);
   if (!ok(mapped)) return mapped;
   const Status located = localisation_.reset(config.localisation, config.mapping, model, camera);
@@ -445,12 +446,9 @@ void Autonomy::publish_stereo() {
   history_.move({p_OB_m, off.shift_O_m, off.yaw_rad});
 }
 
-// A depth camera sees the ground better; the stereo camera then is an odometer only.
-bool Autonomy::maps_by_stereo() const { return stereo_.enabled() && stereo_.maps(); }
-
 // What the robot's eyes have made of the ground in this tick, once; frame null: nothing.
 Autonomy::Sight Autonomy::take_sight(const TickInputs& inputs) {
-  if (!maps_by_stereo()) return {inputs.depth_fresh ? inputs.depth : nullptr, nullptr};
+  if (!stereo_.maps()) return {inputs.depth_fresh ? inputs.depth : nullptr, nullptr};
   const StereoPicture* const picture = stereo_.take();
   if (picture == nullptr) return {};
   return {&picture->depth, &picture->noise};

@@ -141,7 +141,6 @@ class Autonomy {
     const hal::DepthFrame* frame = nullptr;
     const mapping::DepthNoise* noise = nullptr;  // null: the sensor's
   };
-  bool maps_by_stereo() const;
   Sight take_sight(const TickInputs& inputs);
 
   robot::RobotModel model_;

@@ -6,10 +6,6 @@ namespace {
 // From the tick that asks for a pair to the middle of its exposure, at most.
 constexpr TimeNs kTriggerDelay = milliseconds(20);
 
-geometry::Pose<geometry::Odometry, geometry::Body> trunk(const PastPose& pose) {
-  return {{geometry::to_matrix(pose.q_OB)}, {pose.p_OB_m}};
-}
-
 }  // namespace
 
 Status CameraMotion::reset(const CameraMotionConfig& config, const stereo::RectifiedPair& pair,
@@ -61,7 +57,7 @@ bool CameraMotion::predict(TimeNs exposed, const PoseHistory& history) {
     odometry_.reset();
     return true;
   }
-  const auto X_PN = (trunk(before.value()) * X_BN_).inverse() * (trunk(now.value()) * X_BN_);
+  const auto X_PN = (before.value().X_OB() * X_BN_).inverse() * (now.value().X_OB() * X_BN_);
   prediction_.R_PN = X_PN.rotation.matrix;
   prediction_.p_PN_m = X_PN.origin.m;
   return true;

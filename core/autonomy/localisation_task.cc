@@ -15,12 +15,6 @@ registration::SourcePose source_pose(const PastPose& pose) {
   return X_OB;
 }
 
-// Heading of the rotation that leads from one attitude to another, in O.
-double turned_rad(const Matrix3& from, const Matrix3& to) {
-  const Matrix3 turn = to * from.transpose();
-  return math::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
-}
-
 }  // namespace
 
 Status LocalisationTask::reset(const LocalisationConfig& config,
@@ -180,7 +174,7 @@ void LocalisationTask::publish() {
   PastPose& pose = picture_.pose;
   shift_.pivot_O_m = pose.p_OB_m;
   shift_.shift_O_m = working_.X_TS.origin.m - pose.p_OB_m;
-  shift_.yaw_rad = turned_rad(prior.rotation.matrix, working_.X_TS.rotation.matrix);
+  shift_.yaw_rad = geometry::turn_about_z_rad(prior.rotation.matrix, working_.X_TS.rotation.matrix);
   pose.p_OB_m = working_.X_TS.origin.m;
   pose.q_OB = geometry::to_quaternion(working_.X_TS.rotation.matrix);
   fresh_ = true;

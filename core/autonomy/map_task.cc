@@ -81,8 +81,7 @@ bool MapTask::release(const hal::DepthFrame& frame, const mapping::DepthNoise* n
 
 mapping::SelfModel self_model(const robot::RobotModel& model, const PastPose& pose) {
   mapping::SelfModel self;
-  self.X_OB.rotation.matrix = geometry::to_matrix(pose.q_OB);
-  self.X_OB.origin.m = pose.p_OB_m;
+  self.X_OB = pose.X_OB();
   self.trunk_size_m = model.trunk_size_m;
   for (std::size_t leg = 0; leg < robot::kLegs; ++leg) {
     Vector3 q;

@@ -18,6 +18,10 @@ struct PastPose {
   Vector3 p_OB_m = Vector3::Zero();
   geometry::Quaternion q_OB;
   std::array<double, robot::kJoints> joint_rad{};
+
+  geometry::Pose<geometry::Odometry, geometry::Body> X_OB() const {
+    return {{geometry::to_matrix(q_OB)}, {p_OB_m}};
+  }
 };
 
 // What was believed to be at a place of O is elsewhere: turned about up around the pivot, and

@@ -64,7 +64,7 @@ bool StereoTrigger::update(const StereoMoment& moment, double step_s) {
 Status StereoTask::reset(const robot::StereoCameraSpecification& camera, const StereoConfig& config,
                          const CameraMotionConfig& motion, bool maps) {
   enabled_ = false;
-  maps_ = maps;
+  maps_ = false;
   counters_ = StereoCounters{};
   valid_share_ = 0;
   valid_share_sum_ = 0;
@@ -86,6 +86,7 @@ Status StereoTask::reset(const robot::StereoCameraSpecification& camera, const S
   const Status moves = motion_.reset(motion, plan_.pair, camera_.X_BC);
   if (!ok(moves)) return moves;
   enabled_ = true;
+  maps_ = maps;
   warm_up();
   return Status::kOk;
 }
@@ -119,11 +120,12 @@ void StereoTask::run() {
   const stereo::GreyView left{pair_.left.data(), pair_.width_px, pair_.height_px};
   const stereo::GreyView right{pair_.right.data(), pair_.width_px, pair_.height_px};
   SUREFOOT_ASSERT(ok(rectifier_.run(left, right, left_, right_)));
-  if (!maps_) return motion_.run(left_.view(), right_.view(), nullptr);
-  SUREFOOT_ASSERT(ok(matcher_.match(left_.view(), right_.view(), disparities_)));
-  rectifier_.clear_unseen(kWindow_px, disparities_);
-  motion_.run(left_.view(), right_.view(), &disparities_);
-  fill(pictures_[working_]);
+  if (maps_) {
+    SUREFOOT_ASSERT(ok(matcher_.match(left_.view(), right_.view(), disparities_)));
+    rectifier_.clear_unseen(kWindow_px, disparities_);
+    fill(pictures_[working_]);
+  }
+  motion_.run(left_.view(), right_.view(), maps_ ? &disparities_ : nullptr);
 }
 
 // The disparities without the margin, as depth along the axis of N.

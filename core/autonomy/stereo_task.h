@@ -3,7 +3,7 @@
 // Also finds the camera's motion from the same pictures (camera_motion.h) and decides when the
 // camera exposes.
 //
-// Memory: sizeof(StereoTask) 26 MB, for pictures up to the port's capacity. Nothing allocates.
+// Memory: sizeof(StereoTask) 23 MB, for pictures up to the port's capacity. Nothing allocates.
 #pragma once
 
 #include <array>
@@ -78,6 +78,7 @@ class StereoTask {
   Status reset(const robot::StereoCameraSpecification& camera, const StereoConfig& config,
                const CameraMotionConfig& motion, bool maps);
   bool enabled() const { return enabled_; }
+  // Only where enabled.
   bool maps() const { return maps_; }
   // Frame C is the rectified left camera. Only where enabled.
   const MapCamera& camera() const { return camera_; }

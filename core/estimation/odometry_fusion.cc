@@ -74,11 +74,8 @@ Status OdometryFusion::update(const Matrix3& R_OB, const LegOdometry& legs, doub
 }
 
 void OdometryFusion::give_attitude(const Matrix3& R_OB) {
-  // Of the turn R_OB R_given^T, about up.
-  const Matrix3 turn = R_OB * R_given_.transpose();
-  const double turned_rad = math::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
+  yaw_rad_ = math::wrap_angle(yaw_rad_ - geometry::turn_about_z_rad(R_given_, R_OB));
   R_given_ = R_OB;
-  yaw_rad_ = math::wrap_angle(yaw_rad_ - turned_rad);
 }
 
 // What position takes of the other states' errors in a step, to be done on rows and on columns.

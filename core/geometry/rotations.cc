@@ -142,6 +142,11 @@ Matrix3 rotation_z(double yaw_rad) {
   return m;
 }
 
+double turn_about_z_rad(const Matrix3& from, const Matrix3& to) {
+  const Matrix3 turn = to * from.transpose();
+  return math::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
+}
+
 bool is_rotation(const Matrix3& R, double tolerance) {
   const Matrix3 error = R.transpose() * R - Matrix3::Identity();
   for (int column = 0; column < 3; ++column) {

@@ -31,6 +31,8 @@ Matrix3 from_roll_pitch_yaw(double roll_rad, double pitch_rad, double yaw_rad);
 Vector3 to_roll_pitch_yaw(const Matrix3& rotation);
 Matrix3 cross_matrix(const Vector3& v);
 Matrix3 rotation_z(double yaw_rad);
+// About z, of the rotation that leads from one attitude to another: its angle if that is all of it.
+double turn_about_z_rad(const Matrix3& from, const Matrix3& to);
 // Every entry of R' R is within `tolerance` of the identity's, and R is no reflection. False for
 // NaN and infinity.
 bool is_rotation(const Matrix3& R, double tolerance);

@@ -73,7 +73,6 @@ Cell Planner::choose_start(const PlanInput& input) {
 // Something stands nearer than the clearance. The robot leaves to the nearest cell that leads on,
 // not nearer to anything than it is; free cells between obstacles would be taken for a prison.
 Cell Planner::way_out(const PlanInput& input, Cell from) {
-  look_for_goal(input);
   reach_.flood_from_outside(map_, ends_);
   const Vector2 robot_O_m = input.robot.p_O_m;
   const double room_m =
@@ -87,10 +86,6 @@ Cell Planner::way_out(const PlanInput& input, Cell from) {
   if (map_.nearest(from, rings, leads_on, out)) return out;
   static_cast<void>(map_.nearest_free(from, map_.side(), out));
   return out;
-}
-
-void Planner::look_for_goal(const PlanInput& input) {
-  goal_ends(map_, input.goal_O_m, config_.follow.arrive_m + map_.lethal_radius_m(), ends_);
 }
 
 // Border cells from where the field leads on, of those that can be reached.
@@ -109,7 +104,6 @@ bool Planner::goal_leads_out(const PlanInput& input) {
 
 // Floods tell beforehand whether there is a way: at most one search, and that one finds.
 SearchResult Planner::search(const PlanInput& input, Cell start, Plan& plan) {
-  look_for_goal(input);
   reach_.flood(map_, start);
   plan.to_goal = !ends_.list.empty() && reach_.contains(ends_.list[0].cell);
   if (!plan.to_goal) {
@@ -175,6 +169,7 @@ void Planner::run(const PlanInput& input, Plan& plan) {
   if (!started_) known_since_ = input.stamp;
   started_ = true;
   make_map(input);
+  goal_ends(map_, input.goal_O_m, config_.follow.arrive_m + map_.lethal_radius_m(), ends_);
   const Cell start = choose_start(input);
   stability_.discount(map_, input.robot.p_O_m);
   const SearchResult result = search(input, start, plan);

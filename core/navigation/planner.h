@@ -73,7 +73,6 @@ class Planner {
   void make_map(const PlanInput& input);
   Cell choose_start(const PlanInput& input);
   Cell way_out(const PlanInput& input, Cell from);
-  void look_for_goal(const PlanInput& input);
   SearchResult search(const PlanInput& input, Cell start, Plan& plan);
   bool find_ends_beyond(const PlanInput& input, bool lenient);
   bool goal_leads_out(const PlanInput& input);

@@ -133,6 +133,28 @@ TEST_F(StereoConfig, RefusesGroupsThatDoNotFit) {
   }
 }
 
+TEST_F(StereoConfig, RefusesASecondOdometerBesideTheCamera) {
+  const struct {
+    std::string set;
+    std::string message;
+  } cases[] = {
+      {"robot.tracking_camera.rate_Hz=200", "the stereo camera is the odometer"},
+      {"visual_odometry.camera.min_disparity_px=65", "not below max_disparity_px"},
+      {"visual_odometry.fusion.gate_sigma=0", "0 is out of range"},
+      {"robot.tracking_camera.rate_Hz=0", ""},
+  };
+  for (const auto& c : cases) {
+    RunRequest request;
+    request.robot = "bigdog";
+    request.sets = {c.set};
+    ConfigIssues issues;
+    load_config_parts(request, kFolder, issues);
+    const std::string text = to_string(issues);
+    EXPECT_EQ(text.empty(), c.message.empty()) << text;
+    EXPECT_NE(text.find(c.message), std::string::npos) << text;
+  }
+}
+
 TEST_F(StereoConfig, AFileThatDoesNotExistIsNamed) {
   RunRequest request;
   request.robot = "littledog";
